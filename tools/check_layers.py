@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """check_layers.py [ROOT]: holds every #include of the program against tools/layers.txt and the fences of foreign packages.
 
-A folder includes only what its row allows, and reaches what its row must not see on no way round either. A foreign
-package stays behind its fence. Public headers show only the standard library, Eigen and tl::expected.
+A room includes only what its row and its district allow, and reaches what its row must not see on no way round either.
+Headers in a room's folder `detail` are for that room alone. A foreign package stays behind its fence. Other headers show
+only the standard library, Eigen and tl::expected.
 """
 
 import re
@@ -17,77 +18,87 @@ FENCES = [
     ("Eigen", ("Eigen/",), None),
     ("tl::expected", ("tl/",), None),
     ("fmt", ("fmt/",), None),
-    ("zlib", ("zlib.h", "zconf.h"), {"base"}),
+    ("zlib", ("zlib.h", "zconf.h"), {"core"}),
     ("GeographicLib", ("GeographicLib/",), {"geo"}),
     ("toml++", ("toml++/", "toml.hpp"), {"scenario"}),
     ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "campaign", "campaign_report", "api", "feed", "output",
                                        "control", "scenario", "tracks", "host"}),
-    ("pugixml", ("pugixml",), {"city", "tracks", "src/verdict/reports.cpp"}),
-    ("libzip", ("zip.h",), {"src/tracks/kmz_track.cpp"}),
+    ("pugixml", ("pugixml",), {"city", "tracks", "src/run/verdict/reports.cpp"}),
+    ("libzip", ("zip.h",), {"src/motion/tracks/kmz_track.cpp"}),
     ("libosmium", ("osmium/", "protozero/"), {"city"}),
     ("CLI11", ("CLI/", "CLI11"), {"host"}),
     ("spdlog", ("spdlog/",), {"host"}),
     ("GoogleTest", ("gtest/", "gmock/"), set()),
     ("Google Benchmark", ("benchmark/",), set()),
-    ("Embree", ("embree",), {"src/scene/triangle_tree.cpp"}),
+    ("Embree", ("embree",), {"src/world/scene/triangle_tree.cpp"}),
     ("libusb", ("libusb",), {"usb"}),
     ("hidapi", ("hidapi",), {"hid"}),
-    ("Boost", ("boost/",), {"control", "src/campaign_report/intervals.cpp", "src/campaign_report/rank_tests.cpp"}),
-    ("OpenSSL", ("openssl/",), {"src/campaign/sha256.cpp"}),
-    ("SQLite", ("sqlite3",), {"src/campaign/campaign_database.cpp", "campaign_report"}),
+    ("Boost", ("boost/",), {"control", "src/campaigns/campaign_report/intervals.cpp", "src/campaigns/campaign_report/rank_tests.cpp"}),
+    ("OpenSSL", ("openssl/",), {"src/campaigns/campaign/sha256.cpp"}),
+    ("SQLite", ("sqlite3",), {"src/campaigns/campaign/campaign_database.cpp", "campaign_report"}),
     ("the C library", ("stddef.h", "stdint.h"), {"include/skyloop.h"}),
     # What talks to the kernel is a wire, a file, a terminal or a program that is run; all else is arithmetic.
     ("the operating system",
      ("sys/", "asm/", "linux/", "net/", "netinet/", "arpa/", "fcntl.h", "unistd.h", "termios.h", "poll.h", "pty.h",
       "pthread.h", "signal.h", "netdb.h", "sched.h", "dirent.h", "csignal", "spawn.h", "dlfcn.h", "grp.h", "pwd.h"),
-     {"actuator", "base", "campaign", "devices", "hid", "transport", "emulator", "host", "src/api/data_place.cpp",
-      "src/feed/mavlink_endpoint.cpp", "src/feed/feed_link.hpp", "src/feed/feed_socket.cpp", "src/feed/feed_socket.hpp",
-      "src/feed/feed_stream.cpp", "src/feed/feed_worker.cpp", "src/feed/stream_link.cpp"}),
+     {"actuator", "core", "campaign", "devices", "hid", "transport", "emulator", "host", "src/run/api/data_place.cpp",
+      "src/run/feed/mavlink_endpoint.cpp", "src/run/feed/detail/feed_link.hpp", "src/run/feed/feed_socket.cpp", "src/run/feed/detail/feed_socket.hpp",
+      "src/run/feed/feed_stream.cpp", "src/run/feed/feed_worker.cpp", "src/run/feed/stream_link.cpp"}),
 ]
 PUBLIC = {"Eigen", "tl::expected", "the C library"}
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 
 
+DISTRICT = re.compile(r"\[([\w-]+) :((?: [\w-]+)*)\](?:\s*#.*)?")
+ROOM = re.compile(r"(\w+)\s*:([\w\s]*)((?:![\w/]+\s*)*)")
+
+
 class Row:
-    def __init__(self, name, allowed, unseen):
-        self.name, self.allowed, self.unseen = name, allowed, unseen
+    def __init__(self, name, district, allowed, unseen):
+        self.name, self.district, self.allowed, self.unseen = name, district, allowed, unseen
 
 
 def read_rows(path):
-    """The table as {name: Row}; a row may name only rows above it."""
-    rows, errors = {}, []
+    """The table as {room: Row}; districts and rooms name only what stands above them."""
+    rows, errors, districts, district, below = {}, [], set(), None, set()
     for number, line in enumerate(path.read_text().splitlines(), 1):
+        def complain(text):
+            errors.append(f"{path}:{number}: {text}")
         if not line.strip() or line.startswith("#"):
             continue
-        match = re.fullmatch(r"(\w+)\s*:([\w\s]*)((?:![\w/]+\s*)*)", line)
-        if not match or match[1] in rows:
-            errors.append(f"{path}:{number}: expected 'folder : folders !unseen/header', once for each folder")
+        if match := DISTRICT.fullmatch(line):
+            district, below = match[1], set(match[2].split())
+            for name in sorted(below - districts):
+                complain(f"{district} names {name}, which is no district above it")
+            districts.add(district)
+            continue
+        match = ROOM.fullmatch(line)
+        if not match or match[1] in rows or district is None:
+            complain("expected '[district : districts]' or 'room : rooms !unseen/header', once for each room")
             continue
         allowed = match[2].split()
         for name in allowed:
             if name not in rows:
-                errors.append(f"{path}:{number}: {match[1]} names {name}, which has no row above it")
-        rows[match[1]] = Row(match[1], set(allowed), set(match[3].replace("!", "").split()))
+                complain(f"{match[1]} names {name}, which has no row above it")
+            elif rows[name].district not in below | {district}:
+                complain(f"{match[1]} names {name} of {rows[name].district}, which {district} does not name")
+        rows[match[1]] = Row(match[1], district, set(allowed), set(match[3].replace("!", "").split()))
     return rows, errors
 
 
-def layer_of(relative):
-    """The row that a file of the program belongs to, or None."""
+def place_of(relative):
+    """District and room of a file of the program, or None."""
     parts = relative.parts
-    if parts[0] == "src" and len(parts) > 2:
-        return parts[1]
-    if parts[:2] == ("include", "skyloop") and len(parts) > 3:
-        return parts[2]
-    if parts[0] == "firmware-host" and len(parts) > 2:
-        return parts[1]
     if parts == ("include", "skyloop.h"):
-        return "api"
-    return None
+        return "run", "api"
+    if parts[0] == "src" and len(parts) > 3:
+        return parts[1:3]
+    return parts[:2] if parts[0] == "firmware-host" and len(parts) > 2 else None
 
 
 def is_public(relative):
-    return relative.suffix in (".hpp", ".h") and relative.parts[0] in ("include", "firmware-host")
+    return relative.suffix in (".hpp", ".h") and "detail" not in relative.parts
 
 
 class Checker:
@@ -107,9 +118,9 @@ class Checker:
         self.errors.append(f"{relative}:{line}: {message}")
 
     def check_file(self, relative):
-        layer = layer_of(relative)
+        district, layer = place_of(relative) or (None, None)
         self.edges[relative] = []
-        if layer not in self.rows:
+        if layer not in self.rows or self.rows[layer].district != district:
             self.complain(relative, 1, "belongs to no row of tools/layers.txt")
             return
         text = source_tree.without_comments((self.root / relative).read_text(errors="replace"))
@@ -128,18 +139,18 @@ class Checker:
     def own_header(self, relative, name):
         """The file of the project that an include names, or None."""
         beside = Path("/".join(p for p in (*relative.parts[:-1], name)))
-        for candidate in (Path("include") / name, Path("firmware-host") / name, beside):
+        for candidate in (Path("include") / name, Path("src") / name, Path("firmware-host") / name, beside):
             if ".." not in candidate.parts and (self.root / candidate).is_file():
                 return candidate
         return None
 
     def check_own(self, relative, layer, line, own):
-        target = layer_of(own)
+        _, target = place_of(own)
         if target == layer:
             return
         if target not in self.rows[layer].allowed:
             self.complain(relative, line, f"{layer} may not include {target} (tools/layers.txt)")
-        elif own.parts[0] == "src":
+        elif not is_public(own):
             self.complain(relative, line, f"{own} is private to {target}")
 
     def check_foreign(self, relative, layer, line, name):
@@ -157,10 +168,14 @@ class Checker:
             self.complain(relative, line, f"<{name}>: a public header shows only the standard library, Eigen and tl::expected")
 
     def check_unseen(self, start):
-        row = self.rows.get(layer_of(start))
+        _, layer = place_of(start) or (None, None)
+        row = self.rows.get(layer)
         if row is None or not row.unseen:
             return
-        unseen = {Path("include/skyloop") / (name + ".hpp"): name for name in row.unseen}
+        unseen = {}
+        for name in row.unseen:
+            room = self.rows.get(name.split("/")[0])
+            unseen[Path("src") / (room.district if room else "") / (name + ".hpp")] = name
         ways, queue = {start: [start]}, [start]
         while queue:
             here = queue.pop(0)

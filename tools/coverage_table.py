@@ -11,11 +11,9 @@ FIELDS = ("line_covered", "line_total", "branch_covered", "branch_total")
 
 
 def folder_of(path: str) -> str:
-    """src/pvt, firmware-host; headers count with the sources of their folder."""
+    """src/receiver/pvt, firmware-host."""
     parts = pathlib.PurePosixPath(path).parts
-    if parts[:2] == ("include", "skyloop"):
-        return f"src/{parts[2]}" if len(parts) > 3 else "include"
-    return "/".join(parts[:2]) if parts[0] == "src" else parts[0]
+    return "/".join(parts[:3]) if parts[0] == "src" else parts[0]
 
 
 def percent(covered: int, total: int) -> str:

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "base/core/bytes.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 

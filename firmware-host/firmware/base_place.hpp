@@ -3,10 +3,10 @@
 
 #include <optional>
 
+#include "base/core/units.hpp"
+#include "base/geo/geodetic.hpp"
 #include "firmware/base_survey.hpp"
 #include "firmware/config/config_store.hpp"
-#include "skyloop/base/units.hpp"
-#include "skyloop/geo/geodetic.hpp"
 
 namespace skyloop::firmware {
 

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/core/units.hpp"
+#include "base/geo/geodetic.hpp"
 #include "firmware/config/config_store.hpp"
-#include "skyloop/base/units.hpp"
-#include "skyloop/flow/fix.hpp"
-#include "skyloop/geo/geodetic.hpp"
+#include "world/flow/fix.hpp"
 
 namespace skyloop::firmware {
 

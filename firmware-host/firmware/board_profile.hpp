@@ -9,14 +9,14 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/bytes.hpp"
+#include "base/core/units.hpp"
 #include "firmware/port_id.hpp"
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/base/units.hpp"
-#include "skyloop/gnss/satellite.hpp"
-#include "skyloop/gnss/signal.hpp"
-#include "skyloop/protocol/nmea_satellites.hpp"
-#include "skyloop/protocol/nmea_version.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "receiver/protocol/nmea_satellites.hpp"
+#include "receiver/protocol/nmea_version.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
+#include "world/gnss/satellite.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop::firmware {
 

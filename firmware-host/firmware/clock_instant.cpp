@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "base/geo/local_frame.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "skyloop/protocol/rtcm3.hpp"
-#include "skyloop/protocol/ubx_raw.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/ubx_raw.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <optional>
 
+#include "base/core/bytes.hpp"
+#include "base/geo/frames.hpp"
+#include "base/time/gps_time.hpp"
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
 #include "firmware/navigation_state.hpp"
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/geo/frames.hpp"
-#include "skyloop/time/gps_time.hpp"
 
 namespace skyloop::firmware {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "skyloop/base/units.hpp"
-#include "skyloop/flow/fix.hpp"
+#include "base/core/units.hpp"
+#include "world/flow/fix.hpp"
 
 namespace skyloop::firmware {
 

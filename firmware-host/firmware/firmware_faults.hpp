@@ -9,10 +9,10 @@
 #include <variant>
 #include <vector>
 
+#include "base/core/units.hpp"
 #include "firmware/navigation_state.hpp"
-#include "skyloop/base/units.hpp"
-#include "skyloop/flow/receiver_settings.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
+#include "world/flow/receiver_settings.hpp"
 
 namespace skyloop::firmware {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/geo/geodesic.hpp"
 #include "firmware/config/config_keys.hpp"
-#include "skyloop/geo/geodesic.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -7,14 +7,14 @@
 #include <optional>
 #include <span>
 
+#include "base/core/units.hpp"
+#include "base/geo/frames.hpp"
 #include "firmware/base_survey.hpp"
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
 #include "firmware/port_id.hpp"
-#include "skyloop/base/units.hpp"
-#include "skyloop/flow/epoch.hpp"
-#include "skyloop/flow/receiver_settings.hpp"
-#include "skyloop/geo/frames.hpp"
+#include "world/flow/epoch.hpp"
+#include "world/flow/receiver_settings.hpp"
 
 namespace skyloop::firmware {
 

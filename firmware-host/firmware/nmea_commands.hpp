@@ -9,8 +9,8 @@
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
 #include "firmware/port_id.hpp"
-#include "skyloop/flow/receiver_settings.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "world/flow/receiver_settings.hpp"
 
 namespace skyloop::firmware {
 

@@ -6,8 +6,8 @@
 #include <deque>
 #include <optional>
 
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/time/gps_time.hpp"
+#include "base/core/bytes.hpp"
+#include "base/time/gps_time.hpp"
 
 namespace skyloop::firmware {
 

@@ -14,7 +14,7 @@
 #include "firmware/port.hpp"
 #include "firmware/receiver.hpp"
 #include "firmware/septentrio/command_line_reader.hpp"
-#include "skyloop/protocol/patient_splitter.hpp"
+#include "receiver/protocol/patient_splitter.hpp"
 
 namespace skyloop::firmware {
 

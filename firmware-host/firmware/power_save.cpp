@@ -4,7 +4,7 @@
 
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/legacy_keys.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "base/core/bytes.hpp"
+#include "base/core/result.hpp"
+#include "base/time/gps_time.hpp"
 #include "firmware/board_profile.hpp"
 #include "firmware/firmware_faults.hpp"
 #include "firmware/navigation_state.hpp"
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/base/result.hpp"
-#include "skyloop/flow/epoch.hpp"
-#include "skyloop/flow/receiver_settings.hpp"
-#include "skyloop/time/gps_time.hpp"
+#include "world/flow/epoch.hpp"
+#include "world/flow/receiver_settings.hpp"
 
 namespace skyloop::firmware {
 

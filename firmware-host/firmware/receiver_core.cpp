@@ -7,7 +7,7 @@
 #include "firmware/board_messages.hpp"
 #include "firmware/config/legacy_support.hpp"
 #include "firmware/septentrio/modes.hpp"
-#include "skyloop/protocol/ubx_security.hpp"
+#include "receiver/protocol/ubx_security.hpp"
 
 namespace skyloop::firmware {
 namespace {

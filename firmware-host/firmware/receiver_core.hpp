@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/core/random.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/correction_input.hpp"
 #include "firmware/firmware_faults.hpp"
@@ -19,7 +20,6 @@
 #include "firmware/receiver.hpp"
 #include "firmware/septentrio/console.hpp"
 #include "firmware/state_tracker.hpp"
-#include "skyloop/base/random.hpp"
 
 namespace skyloop::firmware {
 

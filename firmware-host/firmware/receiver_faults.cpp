@@ -2,15 +2,15 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/core/overloaded.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/message_names.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/receiver_core.hpp"
-#include "skyloop/base/overloaded.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
 
 namespace skyloop::firmware {
 

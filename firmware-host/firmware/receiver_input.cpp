@@ -2,17 +2,17 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/core/units.hpp"
 #include "firmware/assistance.hpp"
 #include "firmware/board_messages.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/receiver_core.hpp"
-#include "skyloop/base/units.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_cfg_hardware.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_raw.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_raw.hpp"
 
 namespace skyloop::firmware {
 namespace {

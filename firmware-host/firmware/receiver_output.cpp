@@ -9,7 +9,7 @@
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/receiver_core.hpp"
 #include "firmware/septentrio/modes.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
+#include "receiver/protocol/ubx_time.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "firmware/receiver_core.hpp"
-#include "skyloop/protocol/ubx_cfg_hardware.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_raw.hpp"
+#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_raw.hpp"
 
 namespace skyloop::firmware {
 namespace {

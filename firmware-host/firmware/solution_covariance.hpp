@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "firmware/error_ellipse.hpp"
-#include "skyloop/flow/fix.hpp"
+#include "world/flow/fix.hpp"
 
 namespace skyloop::firmware {
 

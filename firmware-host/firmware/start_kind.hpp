@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "skyloop/flow/receiver_settings.hpp"
+#include "world/flow/receiver_settings.hpp"
 
 namespace skyloop::firmware {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "base/geo/local_frame.hpp"
 #include "firmware/base_place.hpp"
 #include "firmware/clock_instant.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
-#include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "firmware/navigation_state.hpp"
-#include "skyloop/flow/receiver_settings.hpp"
+#include "world/flow/receiver_settings.hpp"
 
 namespace skyloop::firmware {
 

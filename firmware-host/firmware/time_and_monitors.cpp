@@ -5,7 +5,7 @@
 
 #include "firmware/config/config_keys.hpp"
 #include "firmware/state_tracker.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

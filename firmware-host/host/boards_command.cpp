@@ -7,8 +7,8 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "messages.hpp"
+#include "run/scenario/board_file.hpp"
 #include "run_options.hpp"
-#include "skyloop/scenario/board_file.hpp"
 
 namespace skyloop::host {
 namespace {

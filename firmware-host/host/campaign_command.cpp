@@ -6,13 +6,13 @@
 #include <iostream>
 #include <numeric>
 
+#include "base/core/watchdog_process.hpp"
 #include "campaign_options.hpp"
+#include "campaigns/campaign/campaign_worker.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
-#include "skyloop/base/watchdog_process.hpp"
-#include "skyloop/campaign/campaign_worker.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -10,15 +10,15 @@
 #include <numeric>
 #include <system_error>
 
+#include "base/core/text_file.hpp"
 #include "campaign_options.hpp"
+#include "campaigns/engines/engine_files.hpp"
+#include "campaigns/engines/kubernetes_manifest.hpp"
+#include "campaigns/engines/parallel_scripts.hpp"
+#include "campaigns/engines/quoting.hpp"
+#include "campaigns/engines/slurm_job.hpp"
+#include "campaigns/engines/slurm_scripts.hpp"
 #include "run_session.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/engines/engine_files.hpp"
-#include "skyloop/engines/kubernetes_manifest.hpp"
-#include "skyloop/engines/parallel_scripts.hpp"
-#include "skyloop/engines/quoting.hpp"
-#include "skyloop/engines/slurm_job.hpp"
-#include "skyloop/engines/slurm_scripts.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "campaign_engines.hpp"
+#include "campaigns/campaign/campaign_folder.hpp"
 #include "messages.hpp"
-#include "skyloop/campaign/campaign_folder.hpp"
 
 namespace skyloop::host {
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "campaign_options.hpp"
+#include "campaigns/campaign_report/campaign_report.hpp"
 #include "run_options.hpp"
-#include "skyloop/campaign_report/campaign_report.hpp"
 
 namespace skyloop::host {
 

@@ -6,18 +6,18 @@
 #include <map>
 #include <thread>
 
+#include "base/core/say.hpp"
+#include "base/core/shell_word.hpp"
+#include "base/core/terminal_text.hpp"
+#include "base/core/text_file.hpp"
+#include "base/time/utc_time.hpp"
 #include "campaign_options.hpp"
+#include "campaigns/campaign/campaign_database.hpp"
+#include "campaigns/campaign/campaign_worker.hpp"
+#include "campaigns/campaign/shard_file.hpp"
+#include "campaigns/campaign/worker_pool.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"
-#include "skyloop/base/say.hpp"
-#include "skyloop/base/shell_word.hpp"
-#include "skyloop/base/terminal_text.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/campaign/campaign_database.hpp"
-#include "skyloop/campaign/campaign_worker.hpp"
-#include "skyloop/campaign/shard_file.hpp"
-#include "skyloop/campaign/worker_pool.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -2,13 +2,13 @@
 
 #include <cstdio>
 
+#include "base/core/terminal_text.hpp"
+#include "base/time/utc_time.hpp"
+#include "campaigns/campaign/campaign_run.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
+#include "run/fault/planned_events.hpp"
 #include "run_session.hpp"
-#include "skyloop/base/terminal_text.hpp"
-#include "skyloop/campaign/campaign_run.hpp"
-#include "skyloop/fault/planned_events.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -8,8 +8,8 @@
 #include "commands.hpp"
 #include "messages.hpp"
 #include "run_options.hpp"
-#include "skyloop/analysis/comparison.hpp"
-#include "skyloop/plot/scatter_plot.hpp"
+#include "study/analysis/comparison.hpp"
+#include "study/plot/scatter_plot.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -1,7 +1,7 @@
 /// Names of configuration keys in decoded messages: the receiver knows them, the protocol layer does not.
 #pragma once
 
-#include "skyloop/protocol/decoded_message.hpp"
+#include "receiver/protocol/decoded_message.hpp"
 
 namespace skyloop::host {
 

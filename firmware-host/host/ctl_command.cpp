@@ -12,11 +12,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/core/spelling.hpp"
 #include "commands.hpp"
 #include "messages.hpp"
-#include "skyloop/base/spelling.hpp"
-#include "skyloop/control/control_client.hpp"
-#include "skyloop/fault/command.hpp"
+#include "run/control/control_client.hpp"
+#include "run/fault/command.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -1,7 +1,7 @@
 /// Where the program finds its own data.
 #pragma once
 
-#include "skyloop/emulator/assembly.hpp"
+#include "run/emulator/assembly.hpp"
 
 namespace skyloop::host {
 

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "base/core/text_file.hpp"
 #include "commands.hpp"
 #include "config_key_names.hpp"
 #include "input_stream.hpp"
 #include "messages.hpp"
+#include "receiver/protocol/decoded_message.hpp"
 #include "run_options.hpp"
 #include "run_session.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/protocol/decoded_message.hpp"
 
 namespace skyloop::host {
 namespace {

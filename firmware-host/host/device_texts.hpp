@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "skyloop/devices/device_list.hpp"
+#include "wire/devices/device_list.hpp"
 
 namespace skyloop::host {
 

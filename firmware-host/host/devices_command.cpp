@@ -8,8 +8,8 @@
 #include "data_folders.hpp"
 #include "device_texts.hpp"
 #include "messages.hpp"
+#include "run/scenario/device_file.hpp"
 #include "run_options.hpp"
-#include "skyloop/scenario/device_file.hpp"
 
 namespace skyloop::host {
 namespace {

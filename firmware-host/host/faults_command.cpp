@@ -3,12 +3,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/core/spelling.hpp"
 #include "commands.hpp"
 #include "messages.hpp"
+#include "run/control/command_json.hpp"
+#include "run/fault/fault_listing.hpp"
 #include "run_options.hpp"
-#include "skyloop/base/spelling.hpp"
-#include "skyloop/control/command_json.hpp"
-#include "skyloop/fault/fault_listing.hpp"
 
 namespace skyloop::host {
 namespace {

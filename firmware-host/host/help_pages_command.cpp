@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/core/make_folder.hpp"
 #include "commands.hpp"
 #include "completions.hpp"
 #include "manual_pages.hpp"
 #include "messages.hpp"
-#include "skyloop/base/make_folder.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/base/result.hpp"
+#include "base/core/bytes.hpp"
+#include "base/core/result.hpp"
 
 namespace skyloop::host {
 

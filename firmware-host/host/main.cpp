@@ -17,12 +17,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/say.hpp"
+#include "base/core/spelling.hpp"
 #include "commands.hpp"
 #include "help_text.hpp"
 #include "misuse.hpp"
 #include "number_options.hpp"
-#include "skyloop/base/say.hpp"
-#include "skyloop/base/spelling.hpp"
 #include "word_options.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "skyloop/base/terminal_text.hpp"
+#include "base/core/terminal_text.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "skyloop/base/result.hpp"
+#include "base/core/result.hpp"
 
 namespace spdlog {
 class logger;

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/spelling.hpp"
 #include "option_table.hpp"
-#include "skyloop/base/spelling.hpp"
 
 namespace skyloop::host {
 namespace {

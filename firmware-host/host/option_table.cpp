@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "skyloop/scenario/scenario.hpp"
-#include "skyloop/trajectory/vehicle_class.hpp"
+#include "motion/trajectory/vehicle_class.hpp"
+#include "run/scenario/scenario.hpp"
 
 namespace skyloop::host {
 namespace {

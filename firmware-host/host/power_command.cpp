@@ -8,7 +8,7 @@
 
 #include "commands.hpp"
 #include "run_options.hpp"
-#include "skyloop/actuator/actuator_uri.hpp"
+#include "wire/actuator/actuator_uri.hpp"
 
 namespace skyloop::host {
 namespace {

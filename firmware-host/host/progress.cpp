@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "skyloop/base/steady_clock.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/core/steady_clock.hpp"
+#include "base/time/utc_time.hpp"
 
 namespace skyloop::host {
 namespace {

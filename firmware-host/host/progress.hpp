@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/base/job_thread.hpp"
-#include "skyloop/emulator/emulator.hpp"
+#include "base/core/job_thread.hpp"
+#include "run/emulator/emulator.hpp"
 
 namespace skyloop::host {
 

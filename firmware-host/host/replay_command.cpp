@@ -3,16 +3,16 @@
 
 #include <filesystem>
 
+#include "base/core/say.hpp"
+#include "base/core/spared_file.hpp"
+#include "base/core/text_file.hpp"
 #include "commands.hpp"
 #include "messages.hpp"
+#include "run/emulator/replay.hpp"
+#include "run/emulator/thread_priority.hpp"
 #include "run_options.hpp"
 #include "run_session.hpp"
-#include "skyloop/base/say.hpp"
-#include "skyloop/base/spared_file.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/emulator/replay.hpp"
-#include "skyloop/emulator/thread_priority.hpp"
-#include "skyloop/transport/open_transport.hpp"
+#include "wire/transport/open_transport.hpp"
 
 namespace skyloop::host {
 namespace {

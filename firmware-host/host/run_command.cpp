@@ -4,14 +4,14 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/core/say.hpp"
+#include "base/core/watchdog_process.hpp"
+#include "base/time/utc_time.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
+#include "run/emulator/deadline_grants.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
-#include "skyloop/base/say.hpp"
-#include "skyloop/base/watchdog_process.hpp"
-#include "skyloop/emulator/deadline_grants.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/control/command_json.hpp"
+#include "base/core/text_file.hpp"
+#include "run/control/command_json.hpp"
 
 namespace skyloop::host {
 namespace {

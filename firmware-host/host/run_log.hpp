@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "skyloop/base/result.hpp"
-#include "skyloop/emulator/output_file.hpp"
-#include "skyloop/fault/run_observer.hpp"
-#include "skyloop/scenario/scenario.hpp"
+#include "base/core/result.hpp"
+#include "run/emulator/output_file.hpp"
+#include "run/fault/run_observer.hpp"
+#include "run/scenario/scenario.hpp"
 
 namespace skyloop::host {
 

@@ -10,11 +10,11 @@
 #include <limits>
 #include <system_error>
 
-#include "skyloop/base/spelling.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
-#include "skyloop/time/utc_time.hpp"
-#include "skyloop/transport/open_transport.hpp"
+#include "base/core/spelling.hpp"
+#include "base/core/text_file.hpp"
+#include "base/time/utc_time.hpp"
+#include "run/scenario/scenario_file.hpp"
+#include "wire/transport/open_transport.hpp"
 
 namespace skyloop::host {
 namespace {

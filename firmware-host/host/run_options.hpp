@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "base/core/result.hpp"
 #include "messages.hpp"
-#include "skyloop/base/result.hpp"
-#include "skyloop/scenario/scenario.hpp"
+#include "run/scenario/scenario.hpp"
 
 namespace skyloop::host {
 

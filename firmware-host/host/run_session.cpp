@@ -7,13 +7,13 @@
 #include <csignal>
 #include <map>
 
+#include "base/core/say.hpp"
+#include "base/time/utc_time.hpp"
 #include "progress.hpp"
+#include "run/emulator/load_track.hpp"
+#include "run/emulator/run_summary.hpp"
+#include "run/emulator/wires.hpp"
 #include "run_watch.hpp"
-#include "skyloop/base/say.hpp"
-#include "skyloop/emulator/load_track.hpp"
-#include "skyloop/emulator/run_summary.hpp"
-#include "skyloop/emulator/wires.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "messages.hpp"
+#include "run/emulator/assembly.hpp"
 #include "run_options.hpp"
-#include "skyloop/emulator/assembly.hpp"
 
 namespace skyloop::host {
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "skyloop/control/status_json.hpp"
-#include "skyloop/emulator/run_summary.hpp"
-#include "skyloop/emulator/thread_priority.hpp"
-#include "skyloop/fault/planned_events.hpp"
-#include "skyloop/verdict/reports.hpp"
+#include "run/control/status_json.hpp"
+#include "run/emulator/run_summary.hpp"
+#include "run/emulator/thread_priority.hpp"
+#include "run/fault/planned_events.hpp"
+#include "run/verdict/reports.hpp"
 #include "whole_file.hpp"
 
 namespace skyloop::host {

@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "base/core/watchdog_process.hpp"
 #include "messages.hpp"
+#include "run/control/control_server.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/emulator/command_queue.hpp"
+#include "run/emulator/status_board.hpp"
+#include "run/feed/mavlink_endpoint.hpp"
+#include "run/output/run_output.hpp"
+#include "run/verdict/judge.hpp"
 #include "run_log.hpp"
-#include "skyloop/base/watchdog_process.hpp"
-#include "skyloop/control/control_server.hpp"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/emulator/command_queue.hpp"
-#include "skyloop/emulator/status_board.hpp"
-#include "skyloop/feed/mavlink_endpoint.hpp"
-#include "skyloop/output/run_output.hpp"
-#include "skyloop/verdict/judge.hpp"
 
 namespace skyloop::host {
 

@@ -4,15 +4,15 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/core/make_folder.hpp"
+#include "base/core/text_file.hpp"
+#include "base/time/utc_time.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "messages.hpp"
+#include "receiver/logs/log_events.hpp"
+#include "run/emulator/assembly.hpp"
 #include "run_options.hpp"
-#include "skyloop/base/make_folder.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/logs/log_events.hpp"
-#include "skyloop/time/utc_time.hpp"
 #include "whole_file.hpp"
 
 namespace skyloop::host {

@@ -10,16 +10,16 @@
 #include <set>
 #include <utility>
 
+#include "base/core/spared_file.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "messages.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/emulator/load_scene.hpp"
 #include "run_options.hpp"
-#include "skyloop/analysis/scene_sky.hpp"
-#include "skyloop/base/spared_file.hpp"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/emulator/load_scene.hpp"
-#include "skyloop/plot/scene_plot.hpp"
-#include "skyloop/plot/sky_plot.hpp"
+#include "study/analysis/scene_sky.hpp"
+#include "study/plot/scene_plot.hpp"
+#include "study/plot/sky_plot.hpp"
 #include "whole_file.hpp"
 
 namespace skyloop::host {

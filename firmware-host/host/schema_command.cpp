@@ -2,8 +2,8 @@
 
 #include "commands.hpp"
 #include "messages.hpp"
+#include "run/scenario/key_catalogue.hpp"
 #include "run_options.hpp"
-#include "skyloop/scenario/key_catalogue.hpp"
 
 namespace skyloop::host {
 

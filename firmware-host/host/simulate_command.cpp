@@ -5,11 +5,11 @@
 
 #include "commands.hpp"
 #include "data_folders.hpp"
+#include "run/client/open_client.hpp"
+#include "run/emulator/load_track.hpp"
+#include "run/emulator/wires.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
-#include "skyloop/client/open_client.hpp"
-#include "skyloop/emulator/load_track.hpp"
-#include "skyloop/emulator/wires.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -6,20 +6,20 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/time/utc_time.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "firmware/receiver.hpp"
+#include "run/scenario/board_file.hpp"
 #include "run_session.hpp"
 #include "sky_parts.hpp"
-#include "skyloop/analysis/sky_listing.hpp"
-#include "skyloop/analysis/tracks_csv.hpp"
-#include "skyloop/plot/coverage_plot.hpp"
-#include "skyloop/plot/scene_plot.hpp"
-#include "skyloop/plot/sky_plot.hpp"
-#include "skyloop/plot/track_plot.hpp"
-#include "skyloop/scenario/board_file.hpp"
-#include "skyloop/sky/satellite_tracks.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "study/analysis/sky_listing.hpp"
+#include "study/analysis/tracks_csv.hpp"
+#include "study/plot/coverage_plot.hpp"
+#include "study/plot/scene_plot.hpp"
+#include "study/plot/sky_plot.hpp"
+#include "study/plot/track_plot.hpp"
+#include "world/sky/satellite_tracks.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "sky_parts.hpp"
-#include "skyloop/analysis/coverage_map.hpp"
-#include "skyloop/plot/coverage_plot.hpp"
+#include "study/analysis/coverage_map.hpp"
+#include "study/plot/coverage_plot.hpp"
 
 namespace skyloop::host {
 namespace {

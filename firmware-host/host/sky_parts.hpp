@@ -6,8 +6,8 @@
 #include <string>
 
 #include "messages.hpp"
+#include "run/emulator/assembly.hpp"
 #include "run_options.hpp"
-#include "skyloop/emulator/assembly.hpp"
 
 namespace skyloop::host {
 

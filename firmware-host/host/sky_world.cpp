@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "data_folders.hpp"
+#include "run/emulator/load_scene.hpp"
+#include "run/emulator/load_track.hpp"
 #include "run_session.hpp"
 #include "sky_parts.hpp"
-#include "skyloop/analysis/city_run.hpp"
-#include "skyloop/emulator/load_scene.hpp"
-#include "skyloop/emulator/load_track.hpp"
-#include "skyloop/plot/city_run_plot.hpp"
+#include "study/analysis/city_run.hpp"
+#include "study/plot/city_run_plot.hpp"
 
 namespace skyloop::host {
 namespace {

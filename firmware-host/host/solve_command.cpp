@@ -8,16 +8,16 @@
 #include <memory>
 #include <set>
 
+#include "base/core/spared_file.hpp"
+#include "base/time/utc_time.hpp"
 #include "commands.hpp"
+#include "receiver/pvt/navigation_engine.hpp"
+#include "run/emulator/navigation_files.hpp"
+#include "run/emulator/output_file.hpp"
 #include "run_session.hpp"
-#include "skyloop/base/spared_file.hpp"
-#include "skyloop/emulator/navigation_files.hpp"
-#include "skyloop/emulator/output_file.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/pvt/navigation_engine.hpp"
-#include "skyloop/rinex/observation_reader.hpp"
-#include "skyloop/rinex/precise_orbit_file.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/rinex/observation_reader.hpp"
+#include "world/rinex/precise_orbit_file.hpp"
 
 namespace skyloop::host {
 namespace {

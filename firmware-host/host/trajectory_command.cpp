@@ -6,17 +6,17 @@
 #include <filesystem>
 #include <numbers>
 
+#include "base/core/spelling.hpp"
+#include "base/core/text_file.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "messages.hpp"
+#include "motion/tracks/read_track.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/emulator/load_track.hpp"
+#include "run/scenario/scenario_file.hpp"
 #include "run_options.hpp"
-#include "skyloop/base/spelling.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/emulator/load_track.hpp"
-#include "skyloop/plot/path_plot.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
-#include "skyloop/tracks/read_track.hpp"
+#include "study/plot/path_plot.hpp"
 #include "trajectory_listing.hpp"
 
 namespace skyloop::host {

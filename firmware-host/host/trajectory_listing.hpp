@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/trajectory/path_survey.hpp"
+#include "motion/trajectory/path_survey.hpp"
 
 namespace skyloop::host {
 

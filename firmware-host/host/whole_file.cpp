@@ -1,6 +1,6 @@
 #include "whole_file.hpp"
 
-#include "skyloop/emulator/output_file.hpp"
+#include "run/emulator/output_file.hpp"
 
 namespace skyloop::host {
 

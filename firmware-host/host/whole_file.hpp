@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "skyloop/base/result.hpp"
+#include "base/core/result.hpp"
 
 namespace skyloop::host {
 

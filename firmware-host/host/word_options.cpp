@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/spelling.hpp"
 #include "option_table.hpp"
-#include "skyloop/base/spelling.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "bench/prefix_finder.hpp"
 #include "bench/thread_time.hpp"
-#include "skyloop/city/city_file.hpp"
-#include "skyloop/scene/generated_city.hpp"
 #include "support/random_sky.hpp"
+#include "world/city/city_file.hpp"
+#include "world/scene/generated_city.hpp"
 
 namespace {
 

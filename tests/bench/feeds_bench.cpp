@@ -19,11 +19,11 @@
 #include <csignal>
 #include <thread>
 
+#include "base/time/utc_time.hpp"
 #include "real_time.hpp"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/time/utc_time.hpp"
-#include "skyloop/transport/pty.hpp"
+#include "run/emulator/assembly.hpp"
 #include "support/oracle_table.hpp"
+#include "wire/transport/pty.hpp"
 
 namespace {
 

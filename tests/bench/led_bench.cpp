@@ -6,9 +6,9 @@
 #include <atomic>
 #include <cmath>
 
+#include "run/emulator/assembly.hpp"
+#include "run/scenario/scenario_file.hpp"
 #include "skyloop.h"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
 #include "support/oracle_table.hpp"
 #include "support/truth_on_circle.hpp"
 

@@ -3,8 +3,8 @@
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 
 namespace {
 

@@ -4,11 +4,11 @@
 #include <cstring>
 #include <filesystem>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/gnss/foreign_records.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/rinex/precise_orbit_file.hpp"
+#include "base/core/text_file.hpp"
+#include "world/gnss/foreign_records.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/rinex/navigation_file.hpp"
+#include "world/rinex/precise_orbit_file.hpp"
 
 namespace {
 

@@ -5,18 +5,18 @@
 #include <array>
 #include <atomic>
 
+#include "base/time/utc_time.hpp"
 #include "bench/thread_time.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/gnss/nominal_constellation.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/propagation/free_space.hpp"
-#include "skyloop/propagation/modern_effects.hpp"
-#include "skyloop/sky/observe_sky.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "run/emulator/assembly.hpp"
 #include "support/four_systems.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/propagation/free_space.hpp"
+#include "world/propagation/modern_effects.hpp"
+#include "world/sky/observe_sky.hpp"
 
 namespace {
 

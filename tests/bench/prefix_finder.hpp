@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "scene/path_tracing.hpp"
-#include "scene/plane_sequence.hpp"
-#include "scene/ray_lattice.hpp"
-#include "skyloop/scene/path_finder.hpp"
+#include "world/scene/detail/path_tracing.hpp"
+#include "world/scene/detail/plane_sequence.hpp"
+#include "world/scene/detail/ray_lattice.hpp"
+#include "world/scene/path_finder.hpp"
 
 namespace skyloop::bench {
 

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/base/steady_clock.hpp"
-#include "skyloop/base/text_file.hpp"
+#include "base/core/steady_clock.hpp"
+#include "base/core/text_file.hpp"
 
 namespace skyloop::bench {
 

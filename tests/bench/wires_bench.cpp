@@ -19,12 +19,12 @@
 #include <set>
 #include <thread>
 
+#include "base/time/utc_time.hpp"
 #include "real_time.hpp"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
-#include "skyloop/time/utc_time.hpp"
-#include "skyloop/transport/pty.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
+#include "run/emulator/assembly.hpp"
 #include "support/oracle_table.hpp"
+#include "wire/transport/pty.hpp"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Nor is an angle constructed from a bare number in so many words.
-#include "skyloop/base/units.hpp"
+#include "base/core/units.hpp"
 
 using namespace skyloop;
 

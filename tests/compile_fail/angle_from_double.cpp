@@ -1,5 +1,5 @@
 // An angle says whether it is meant in degrees or radians.
-#include "skyloop/base/units.hpp"
+#include "base/core/units.hpp"
 
 using namespace skyloop;
 

@@ -1,5 +1,5 @@
 // Two points do not add; a point and a displacement do.
-#include "skyloop/geo/frames.hpp"
+#include "base/geo/frames.hpp"
 
 using namespace skyloop;
 

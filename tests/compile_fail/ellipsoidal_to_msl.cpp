@@ -1,5 +1,5 @@
 // A height above the ellipsoid becomes one above the sea only with an undulation.
-#include "skyloop/geo/geodetic.hpp"
+#include "base/geo/geodetic.hpp"
 
 using namespace skyloop;
 

@@ -1,5 +1,5 @@
 // Points of different frames have no difference.
-#include "skyloop/geo/frames.hpp"
+#include "base/geo/frames.hpp"
 
 using namespace skyloop;
 

@@ -1,7 +1,7 @@
 // The wall clock is no GPS time.
 #include <chrono>
 
-#include "skyloop/time/gps_time.hpp"
+#include "base/time/gps_time.hpp"
 
 using namespace skyloop;
 

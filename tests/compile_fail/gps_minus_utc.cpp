@@ -1,5 +1,5 @@
 // GPS time and UTC do not subtract: that takes a table of leap seconds.
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 
 using namespace skyloop;
 

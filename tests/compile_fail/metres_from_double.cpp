@@ -1,5 +1,5 @@
 // A bare number is no length until somebody says so.
-#include "skyloop/base/units.hpp"
+#include "base/core/units.hpp"
 
 using namespace skyloop;
 

@@ -1,5 +1,5 @@
 // Quantities of different units do not add.
-#include "skyloop/base/units.hpp"
+#include "base/core/units.hpp"
 
 using namespace skyloop;
 

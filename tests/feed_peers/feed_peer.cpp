@@ -13,10 +13,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "skyloop/feed/feed_dialect.hpp"
-#include "skyloop/geo/local_map.hpp"
-#include "skyloop/protocol/decoded_message.hpp"
-#include "skyloop/protocol/mavlink_vehicle.hpp"
+#include "base/geo/local_map.hpp"
+#include "receiver/protocol/decoded_message.hpp"
+#include "receiver/protocol/mavlink_vehicle.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
 namespace {

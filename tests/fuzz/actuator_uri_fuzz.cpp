@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/actuator/actuator_uri.hpp"
-#include "skyloop/actuator/hid_switches.hpp"
-#include "skyloop/usb/hub_port_power.hpp"
+#include "wire/actuator/actuator_uri.hpp"
+#include "wire/actuator/hid_switches.hpp"
+#include "wire/usb/hub_port_power.hpp"
 
 namespace {
 

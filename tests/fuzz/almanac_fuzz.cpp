@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/rinex/almanac_file.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/rinex/almanac_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

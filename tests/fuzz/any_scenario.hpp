@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fuzz_input.hpp"
-#include "skyloop/scenario/key_catalogue.hpp"
+#include "run/scenario/key_catalogue.hpp"
 
 namespace skyloop {
 

@@ -11,13 +11,13 @@
 #include <string_view>
 
 #include "any_scenario.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 #include "require.hpp"
+#include "run/fault/fault_kind.hpp"
 #include "skyloop.h"
-#include "skyloop/fault/fault_kind.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
 
 namespace {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "firmware/receiver.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
 #include "require.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
-#include "skyloop/scenario/board_file.hpp"
+#include "run/scenario/board_file.hpp"
 
 namespace {
 

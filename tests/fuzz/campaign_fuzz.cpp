@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
+#include "campaigns/campaign/campaign_folder.hpp"
+#include "campaigns/campaign/run_result.hpp"
 #include "require.hpp"
-#include "skyloop/campaign/campaign_folder.hpp"
-#include "skyloop/campaign/run_result.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
+#include "run/scenario/scenario_file.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <string>
 
+#include "campaigns/campaign_report/campaign_report.hpp"
 #include "require.hpp"
-#include "skyloop/campaign_report/campaign_report.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

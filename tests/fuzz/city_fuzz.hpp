@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "require.hpp"
-#include "skyloop/city/city_file.hpp"
+#include "world/city/city_file.hpp"
 
 namespace skyloop {
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "firmware/config/config_handler.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
 #include "require.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/control/command_json.hpp"
+#include "run/control/command_json.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/control/control_request.hpp"
+#include "run/control/control_request.hpp"
 
 namespace {
 

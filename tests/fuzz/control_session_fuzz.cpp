@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "server_core.hpp"
+#include "run/control/detail/server_core.hpp"
 
 namespace {
 

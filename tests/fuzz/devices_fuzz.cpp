@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/scenario/device_file.hpp"
+#include "run/scenario/device_file.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation_sentence.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/feed/truth_feed.hpp"
+#include "run/feed/truth_feed.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

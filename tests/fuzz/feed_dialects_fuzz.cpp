@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/feed/feed_dialect.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/analysis/comparison.hpp"
-#include "skyloop/analysis/fix_series.hpp"
+#include "study/analysis/comparison.hpp"
+#include "study/analysis/fix_series.hpp"
 
 namespace {
 

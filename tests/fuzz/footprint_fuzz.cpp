@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "require.hpp"
-#include "skyloop/city/footprint.hpp"
+#include "world/city/footprint.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "skyloop/base/bytes.hpp"
+#include "base/core/bytes.hpp"
 
 namespace skyloop {
 

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <string>
 
+#include "motion/trajectory/live_path.hpp"
+#include "motion/trajectory/source_clock.hpp"
 #include "require.hpp"
-#include "skyloop/feed/feed_dialect.hpp"
-#include "skyloop/trajectory/live_path.hpp"
-#include "skyloop/trajectory/source_clock.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "require.hpp"
-#include "skyloop/transport/line_garbler.hpp"
+#include "wire/transport/line_garbler.hpp"
 
 namespace {
 

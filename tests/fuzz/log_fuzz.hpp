@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "receiver/logs/log_events.hpp"
 #include "require.hpp"
-#include "skyloop/logs/log_events.hpp"
 
 namespace skyloop {
 

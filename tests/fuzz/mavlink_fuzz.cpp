@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "skyloop/protocol/mavlink_vehicle.hpp"
+#include "receiver/protocol/mavlink_vehicle.hpp"
 
 namespace {
 

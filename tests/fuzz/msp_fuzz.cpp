@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "skyloop/protocol/msp.hpp"
+#include "receiver/protocol/msp.hpp"
 
 namespace {
 

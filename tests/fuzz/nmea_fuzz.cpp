@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "skyloop/protocol/nmea_decode.hpp"
-#include "skyloop/protocol/nmea_pubx.hpp"
+#include "receiver/protocol/nmea_decode.hpp"
+#include "receiver/protocol/nmea_pubx.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

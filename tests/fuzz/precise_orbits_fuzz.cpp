@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/rinex/precise_orbit_file.hpp"
+#include "world/rinex/precise_orbit_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

@@ -5,8 +5,8 @@
 
 #include "../unit/firmware/sample_epochs.hpp"
 #include "firmware/receiver.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 #include "require.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
 
 namespace {
 

@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <string_view>
 
+#include "base/geo/geodetic.hpp"
 #include "require.hpp"
-#include "skyloop/geo/geodetic.hpp"
-#include "skyloop/gnss/foreign_records.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/sky/observe_sky.hpp"
+#include "world/gnss/foreign_records.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/rinex/navigation_file.hpp"
+#include "world/sky/observe_sky.hpp"
 
 namespace {
 

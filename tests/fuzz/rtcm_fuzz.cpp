@@ -4,10 +4,10 @@
 #include <cstdint>
 
 #include "firmware/correction_input.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 #include "require.hpp"
-#include "skyloop/protocol/rtcm3.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
+#include "run/scenario/scenario_file.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "skyloop/protocol/decoded_message.hpp"
-#include "skyloop/protocol/known_sbf.hpp"
+#include "receiver/protocol/decoded_message.hpp"
+#include "receiver/protocol/known_sbf.hpp"
 
 namespace {
 

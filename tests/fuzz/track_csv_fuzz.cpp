@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <string_view>
 
+#include "motion/trajectory/recorded_path.hpp"
+#include "motion/trajectory/track_csv.hpp"
 #include "require.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
-#include "skyloop/trajectory/track_csv.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
+#include "motion/tracks/read_track.hpp"
+#include "motion/trajectory/recorded_path.hpp"
+#include "motion/trajectory/route.hpp"
 #include "require.hpp"
-#include "skyloop/tracks/read_track.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
-#include "skyloop/trajectory/route.hpp"
 
 namespace skyloop {
 

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "../support/ubx_message_types.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 
 namespace {
 

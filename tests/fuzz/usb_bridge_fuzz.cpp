@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "skyloop/transport/usb_bridge.hpp"
-#include "skyloop/usb/cdc_acm.hpp"
+#include "wire/transport/usb_bridge.hpp"
+#include "wire/usb/cdc_acm.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "require.hpp"
-#include "skyloop/transport/usbip_session.hpp"
+#include "wire/transport/usbip_session.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "fuzz_input.hpp"
 #include "require.hpp"
-#include "skyloop/fault/wire_damage.hpp"
+#include "run/fault/wire_damage.hpp"
 
 namespace {
 

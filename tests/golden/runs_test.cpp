@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/scenario/scenario_file.hpp"
 #include "support/oracle_table.hpp"
 #include "unit/transport/temporary_folder.hpp"
 

@@ -2,12 +2,12 @@
 #include <cstdio>
 #include <fstream>
 
-#include "skyloop/flow/subframe.hpp"
-#include "skyloop/measurement/subframe_reception.hpp"
-#include "skyloop/protocol/ubx_fields.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
-#include "skyloop/rinex/navigation_writer.hpp"
+#include "receiver/measurement/subframe_reception.hpp"
+#include "receiver/protocol/ubx_fields.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 #include "support/four_systems.hpp"
+#include "world/flow/subframe.hpp"
+#include "world/rinex/navigation_writer.hpp"
 
 namespace {
 

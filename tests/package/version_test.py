@@ -20,8 +20,8 @@ class Version(unittest.TestCase):
                 self.assertIn(f'"skyloop {version()}"', page.read_text().splitlines()[1], page.name)
 
     def test_the_library_tells_it(self):
-        self.assertIn(f"\nVersion: {version()}\n", (BUILD / "src/api/skyloop.pc").read_text())
-        self.assertIn(f'set(PACKAGE_VERSION "{version()}")', (BUILD / "src/api/skyloopConfigVersion.cmake").read_text())
+        self.assertIn(f"\nVersion: {version()}\n", (BUILD / "src/run/api/skyloop.pc").read_text())
+        self.assertIn(f'set(PACKAGE_VERSION "{version()}")', (BUILD / "src/run/api/skyloopConfigVersion.cmake").read_text())
 
     def test_packages_tell_it(self):
         told = (BUILD / "CPackConfig.cmake").read_text()

@@ -4,8 +4,8 @@
 
 #include <ostream>
 
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
 #include "support/receiver_rig.hpp"
 
 namespace skyloop {

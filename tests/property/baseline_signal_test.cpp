@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/error_model/uere.hpp"
-#include "skyloop/propagation/specific_attenuation.hpp"
+#include "receiver/error_model/uere.hpp"
 #include "support/model_sky.hpp"
+#include "world/propagation/specific_attenuation.hpp"
 
 namespace skyloop {
 namespace {

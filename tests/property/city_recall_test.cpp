@@ -5,11 +5,11 @@
 #include <cmath>
 #include <cstdio>
 
-#include "skyloop/city/city_file.hpp"
-#include "skyloop/scene/exhaustive_paths.hpp"
-#include "skyloop/scene/generated_city.hpp"
 #include "support/oracle_table.hpp"
 #include "support/random_sky.hpp"
+#include "world/city/city_file.hpp"
+#include "world/scene/exhaustive_paths.hpp"
+#include "world/scene/generated_city.hpp"
 
 namespace skyloop::test {
 namespace {

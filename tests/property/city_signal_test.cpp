@@ -5,13 +5,13 @@
 #include <cmath>
 #include <map>
 
+#include "base/geo/local_frame.hpp"
 #include "property/statistics.hpp"
-#include "skyloop/error_model/uere.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/propagation/ray_traced_scene.hpp"
-#include "skyloop/scene/generated_city.hpp"
+#include "receiver/error_model/uere.hpp"
 #include "support/model_sky.hpp"
 #include "support/modern_run.hpp"
+#include "world/propagation/ray_traced_scene.hpp"
+#include "world/scene/generated_city.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "skyloop/fault/fault_kind.hpp"
+#include "run/fault/fault_kind.hpp"
 #include "support/fault_rows.hpp"
 
 namespace skyloop::test {

@@ -7,11 +7,11 @@
 #include <map>
 #include <ostream>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
+#include "base/core/random.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
 #include "support/receiver_rig.hpp"
 
 namespace skyloop {

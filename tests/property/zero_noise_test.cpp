@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/geo/local_frame.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/modern_run.hpp"
 
 namespace skyloop::test {

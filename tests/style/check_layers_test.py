@@ -10,22 +10,27 @@ import check_layers  # noqa: E402
 
 TABLE = """\
 # comment
-base     :
-flow     : base
-scene    : base
-world    : base flow
-firmware : base flow     !flow/truth !flow/all
-host     : base flow world firmware
+[base :]  # values
+core     :
+[world : base]
+flow     : core
+scene    : core
+[motion : base]
+tracks   : core
+[firmware-host : base world]
+firmware : core flow     !flow/truth !flow/all
+[firmware-host : base world motion]
+host     : core flow tracks firmware
 """
 GOOD = {
     "tools/layers.txt": TABLE,
-    "include/skyloop/base/a.hpp": "#include <vector>\n#include <tl/expected.hpp>\n",
-    "include/skyloop/flow/truth.hpp": '#include "skyloop/base/a.hpp"\n',
-    "include/skyloop/flow/all.hpp": '#include "skyloop/flow/truth.hpp"\n',
-    "include/skyloop/flow/fix.hpp": "#include <Eigen/Core>\n",
-    "src/base/private.hpp": "",
-    "src/base/a.cpp": '#include "skyloop/base/a.hpp"\n#include <zlib.h>\n#include <fmt/format.h>\n#include "private.hpp"\n',
-    "firmware-host/firmware/receiver.hpp": '#include "skyloop/flow/fix.hpp"\n',
+    "src/base/core/a.hpp": "#include <vector>\n#include <tl/expected.hpp>\n",
+    "src/world/flow/truth.hpp": '#include "base/core/a.hpp"\n',
+    "src/world/flow/all.hpp": '#include "world/flow/truth.hpp"\n',
+    "src/world/flow/fix.hpp": "#include <Eigen/Core>\n",
+    "src/base/core/detail/private.hpp": "",
+    "src/base/core/a.cpp": '#include "base/core/a.hpp"\n#include <zlib.h>\n#include <fmt/format.h>\n#include "detail/private.hpp"\n',
+    "firmware-host/firmware/receiver.hpp": '#include "world/flow/fix.hpp"\n',
     "firmware-host/host/main.cpp": '#include "firmware/receiver.hpp"\n#include <CLI/CLI.hpp>\n#include <sys/stat.h>\n',
 }
 
@@ -49,64 +54,66 @@ class CheckLayers(unittest.TestCase):
         self.assertEqual(self.errors(), [])
 
     def test_a_layer_that_the_row_does_not_name(self):
-        self.expect("src/flow/x.cpp:2: flow may not include world",
-                    {"src/flow/x.cpp": '\n#include "skyloop/world/w.hpp"\n', "include/skyloop/world/w.hpp": ""})
+        self.expect("src/world/flow/x.cpp:2: flow may not include tracks",
+                    {"src/world/flow/x.cpp": '\n#include "motion/tracks/w.hpp"\n', "src/motion/tracks/w.hpp": ""})
 
     def test_angle_brackets_are_no_way_round(self):
-        self.expect("base may not include flow", {"src/base/x.cpp": "#include <skyloop/flow/fix.hpp>\n"})
+        self.expect("core may not include flow", {"src/base/core/x.cpp": "#include <world/flow/fix.hpp>\n"})
 
     def test_the_truth_is_not_seen_directly(self):
         self.expect("firmware must not see flow/truth", {
-            "firmware-host/firmware/x.cpp": '#include "skyloop/flow/truth.hpp"\n'})
+            "firmware-host/firmware/x.cpp": '#include "world/flow/truth.hpp"\n'})
 
     def test_the_truth_is_not_seen_through_another_header(self):
-        self.expect("by include/skyloop/flow/peek.hpp > include/skyloop/flow/truth.hpp", {
-            "include/skyloop/flow/peek.hpp": '#include "skyloop/flow/truth.hpp"\n',
-            "firmware-host/firmware/x.cpp": '#include <vector>\n#include "skyloop/flow/peek.hpp"\n'})
+        self.expect("by src/world/flow/peek.hpp > src/world/flow/truth.hpp", {
+            "src/world/flow/peek.hpp": '#include "world/flow/truth.hpp"\n',
+            "firmware-host/firmware/x.cpp": '#include <vector>\n#include "world/flow/peek.hpp"\n'})
 
     def test_every_way_to_the_unseen_is_told(self):
-        errors = self.errors(files={"firmware-host/firmware/x.cpp": '#include "skyloop/flow/all.hpp"\n'})
+        errors = self.errors(files={"firmware-host/firmware/x.cpp": '#include "world/flow/all.hpp"\n'})
         self.assertEqual(len(errors), 2)
 
     def test_fences(self):
-        for include, place in (("GeographicLib/Geoid.hpp", "base"), ("toml++/toml.h", "flow"), ("CLI/CLI.hpp", "world"),
-                               ("spdlog/spdlog.h", "base"), ("zlib.h", "flow"), ("nlohmann/json.hpp", "base"),
-                               ("boost/beast.hpp", "base"), ("libusb-1.0/libusb.h", "world"), ("gtest/gtest.h", "base"),
-                               ("termios.h", "flow"), ("embree4/rtcore.h", "world"), ("hidapi/hidapi.h", "world")):
+        for include, place in (("GeographicLib/Geoid.hpp", "base/core"), ("toml++/toml.h", "world/flow"), ("CLI/CLI.hpp", "motion/tracks"),
+                               ("spdlog/spdlog.h", "base/core"), ("zlib.h", "world/flow"), ("nlohmann/json.hpp", "base/core"),
+                               ("boost/beast.hpp", "base/core"), ("libusb-1.0/libusb.h", "world/flow"), ("gtest/gtest.h", "base/core"),
+                               ("termios.h", "world/flow"), ("embree4/rtcore.h", "world/flow"), ("hidapi/hidapi.h", "world/flow")):
             with self.subTest(include):
                 self.expect(f"<{include}>", {f"src/{place}/x.cpp": f"#include <{include}>\n"})
 
     def test_a_fence_around_one_file(self):
-        include = {"src/scene/other.cpp": "#include <embree3/rtcore.h>\n"}
-        self.expect("only in src/scene/triangle_tree.cpp", include)
-        self.assertEqual(self.errors(files={"src/scene/triangle_tree.cpp": "#include <embree3/rtcore.h>\n"}), [])
+        include = {"src/world/scene/other.cpp": "#include <embree3/rtcore.h>\n"}
+        self.expect("only in src/world/scene/triangle_tree.cpp", include)
+        self.assertEqual(self.errors(files={"src/world/scene/triangle_tree.cpp": "#include <embree3/rtcore.h>\n"}), [])
 
     def test_an_unknown_package(self):
-        self.expect("of no package", {"src/base/x.cpp": "#include <curl/curl.h>\n"})
-        self.expect("of no package", {"src/base/x.cpp": "#include <stdlib.h>\n"})
+        self.expect("of no package", {"src/base/core/x.cpp": "#include <curl/curl.h>\n"})
+        self.expect("of no package", {"src/base/core/x.cpp": "#include <stdlib.h>\n"})
 
     def test_public_headers_show_little(self):
-        self.expect("a public header shows only", {"include/skyloop/base/x.hpp": "#include <fmt/format.h>\n"})
-        self.expect("a public header shows only", {"include/skyloop/base/x.hpp": "#include <zlib.h>\n"})
+        self.expect("a public header shows only", {"src/base/core/x.hpp": "#include <fmt/format.h>\n"})
+        self.expect("a public header shows only", {"src/base/core/x.hpp": "#include <zlib.h>\n"})
 
     def test_private_headers_stay_private(self):
-        self.expect("no header of the project", {"src/flow/x.cpp": '#include "private.hpp"\n'})
-        self.expect("no header of the project", {"src/flow/x.cpp": '#include "../base/private.hpp"\n'})
+        self.expect("no header of the project", {"src/world/flow/x.cpp": '#include "private.hpp"\n'})
+        self.expect("no header of the project", {"src/world/flow/x.cpp": '#include "../base/private.hpp"\n'})
+        self.expect("is private to core", {"src/world/flow/x.cpp": '#include "base/core/detail/private.hpp"\n'})
 
     def test_a_header_that_is_not_there(self):
-        self.expect("no header of the project", {"src/flow/x.cpp": '#include "skyloop/flow/nowhere.hpp"\n'})
+        self.expect("no header of the project", {"src/world/flow/x.cpp": '#include "world/flow/nowhere.hpp"\n'})
 
     def test_a_folder_without_a_row(self):
-        self.expect("belongs to no row", {"src/other/x.cpp": ""})
-        self.expect("belongs to no row", {"src/x.cpp": ""})
+        for place in ("src/base/other", "src/other", "src", "src/world/core"):
+            self.expect("belongs to no row", {f"{place}/x.cpp": ""})
 
     def test_comments_are_not_includes_and_oddly_spelled_ones_are(self):
         self.assertEqual(self.errors(files={
-            "src/base/x.cpp": '// #include <boost/a.hpp>\n/*\n#include <boost/b.hpp>\n*/\n'}), [])
-        self.expect("x.cpp:2", {"src/base/x.cpp": '\n  #  include\t"skyloop/flow/fix.hpp" // why\n'})
+            "src/base/core/x.cpp": '// #include <boost/a.hpp>\n/*\n#include <boost/b.hpp>\n*/\n'}), [])
+        self.expect("x.cpp:2", {"src/base/core/x.cpp": '\n  #  include\t"world/flow/fix.hpp" // why\n'})
 
     def test_the_table_itself(self):
-        for row in ("base : flow\nflow : base\n", "base base\n", "base :\nbase :\n"):
+        for row in ("[a :]\nbase : flow\nflow : base\n", "[a :]\nbase base\n", "[a :]\nbase :\nbase :\n", "base :\n", "[a : b]\n",
+                    "[a :]\nx :\n[b :]\ny : x\n"):
             with self.subTest(row):
                 with tempfile.TemporaryDirectory() as folder:
                     path = Path(folder) / "layers.txt"

@@ -53,17 +53,17 @@ def read(name):
 
 
 def scenario_sources():
-    return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/scenario").glob("*.cpp"))
+    return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/run/scenario").glob("*.cpp"))
             if not path.name.startswith(("board_", "key_"))]
 
 
 def board_sources():
-    return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/scenario").glob("board_*.cpp"))]
+    return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/run/scenario").glob("board_*.cpp"))]
 
 
 def columns(header):
     """Columns of a table whose header line is the C++ constant `header`."""
-    text = re.search(rf"{header} =((?:\s*\"[^\"]*\")+);", read("src/emulator/trace_rows.hpp")).group(1)
+    text = re.search(rf"{header} =((?:\s*\"[^\"]*\")+);", read("src/run/emulator/trace_rows.hpp")).group(1)
     return "".join(re.findall(r'"([^"]*)"', text)).removesuffix("\\n").split(",")
 
 
@@ -102,7 +102,7 @@ class Pages(unittest.TestCase):
         self.expect_all(set().union(*map(words_read, scenario_sources())), "docs/scenario.md")
 
     def test_presets_are_told(self):
-        names = re.findall(r"_names\[\] = \{([^}]*)\}", read("include/skyloop/scenario/modern_settings.hpp"))
+        names = re.findall(r"_names\[\] = \{([^}]*)\}", read("src/run/scenario/modern_settings.hpp"))
         words = set(re.findall(r'"([^"]+)"', ",".join(names)))
         self.assertGreater(len(words), 4)
         self.assertEqual(sorted(words - names_told(read("docs/scenario.md"))), [])

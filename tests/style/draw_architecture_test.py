@@ -8,18 +8,19 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import draw_architecture  # noqa: E402
 
-LAYERS = "# comment\nbase :\ntime : base  !base/x\ngeo : base\nflow : base time geo\n"
+LAYERS = "# comment\n[base :]  # values\ncore :\ntime : core  !core/x\ngeo : core\n[world : base]\nflow : core time geo\n"
 
 
 class Picture(unittest.TestCase):
     def test_rows(self):
-        layers = draw_architecture.read_layers(LAYERS)
-        self.assertEqual(layers, {"base": [], "time": ["base"], "geo": ["base"], "flow": ["base", "time", "geo"]})
-        self.assertEqual(draw_architecture.rows_of(layers), [["base"], ["time", "geo"], ["flow"]])
+        layers, districts = draw_architecture.read_layers(LAYERS)
+        self.assertEqual(layers, {"core": [], "time": ["core"], "geo": ["core"], "flow": ["core", "time", "geo"]})
+        self.assertEqual(districts, {"core": "base", "time": "base", "geo": "base", "flow": "world"})
+        self.assertEqual(draw_architecture.rows_of(layers), [["core"], ["time", "geo"], ["flow"]])
 
     def test_each_folder_is_drawn_above_what_it_includes(self):
-        layers = draw_architecture.read_layers((ROOT / "tools/layers.txt").read_text(encoding="utf-8"))
-        svg = xml.etree.ElementTree.fromstring(draw_architecture.picture(layers))
+        layers, districts = draw_architecture.read_layers((ROOT / "tools/layers.txt").read_text(encoding="utf-8"))
+        svg = xml.etree.ElementTree.fromstring(draw_architecture.picture(layers, districts))
         height = {node.text: float(node.get("y")) for node in svg.iter("{http://www.w3.org/2000/svg}text")
                   if node.text in layers and float(node.get("y")) > draw_architecture.TOP}
         self.assertEqual(set(height), set(layers))
@@ -29,8 +30,8 @@ class Picture(unittest.TestCase):
 
     def test_another_layer_is_another_picture(self):
         draw = draw_architecture.picture
-        self.assertNotEqual(draw(draw_architecture.read_layers(LAYERS)),
-                            draw(draw_architecture.read_layers(LAYERS + "new : flow\n")))
+        self.assertNotEqual(draw(*draw_architecture.read_layers(LAYERS)),
+                            draw(*draw_architecture.read_layers(LAYERS + "new : flow\n")))
 
 
 if __name__ == "__main__":

@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "firmware/config/config_keys.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_names.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
 #include "support/run_parts.hpp"
 
 namespace skyloop::test {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "skyloop/geo/geoid.hpp"
+#include "base/geo/geoid.hpp"
 
 namespace skyloop::test {
 

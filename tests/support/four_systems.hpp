@@ -6,9 +6,9 @@
 #include <numbers>
 #include <vector>
 
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/gnss/navigation_source.hpp"
-#include "skyloop/gnss/orbit.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {
 

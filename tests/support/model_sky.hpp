@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "skyloop/error_model/make_error_model.hpp"
-#include "skyloop/error_model/model_effects.hpp"
-#include "skyloop/flow/trace.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/propagation/free_space.hpp"
-#include "skyloop/propagation/spherical_path.hpp"
+#include "receiver/error_model/make_error_model.hpp"
+#include "receiver/error_model/model_effects.hpp"
+#include "world/flow/trace.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/propagation/free_space.hpp"
+#include "world/propagation/spherical_path.hpp"
 
 namespace skyloop::test {
 

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "skyloop/emulator/simulation.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/propagation/modern_effects.hpp"
-#include "skyloop/scenario/modern_settings.hpp"
-#include "skyloop/trajectory/geometric_paths.hpp"
+#include "base/geo/local_frame.hpp"
+#include "motion/trajectory/geometric_paths.hpp"
+#include "run/emulator/simulation.hpp"
+#include "run/scenario/modern_settings.hpp"
 #include "support/four_systems.hpp"
+#include "world/propagation/modern_effects.hpp"
 
 namespace skyloop::test {
 

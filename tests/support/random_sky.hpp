@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/scene/scene_path.hpp"
+#include "base/core/random.hpp"
+#include "world/scene/scene_path.hpp"
 
 namespace skyloop::test {
 

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/time/utc_time.hpp"
 #include "firmware/receiver.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_fields.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/scenario/board_file.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_fields.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "run/scenario/board_file.hpp"
 
 namespace skyloop::test {
 

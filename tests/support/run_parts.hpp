@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/gnss/nominal_constellation.hpp"
-#include "skyloop/scenario/board_file.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
-#include "skyloop/transport/memory.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/scenario/board_file.hpp"
+#include "run/scenario/scenario_file.hpp"
 #include "support/oracle_table.hpp"
+#include "wire/transport/memory.hpp"
+#include "world/gnss/nominal_constellation.hpp"
 
 namespace skyloop::test {
 

@@ -16,9 +16,9 @@
 #include <utility>
 
 #include "as_nobody.hpp"
-#include "skyloop/actuator/actuator_uri.hpp"
-#include "skyloop/actuator/power_watchdog.hpp"
 #include "testbed.hpp"
+#include "wire/actuator/actuator_uri.hpp"
+#include "wire/actuator/power_watchdog.hpp"
 
 namespace skyloop {
 namespace {

@@ -9,11 +9,11 @@
 #include <functional>
 #include <thread>
 
-#include "skyloop/devices/device_list.hpp"
-#include "skyloop/usb/usb_context.hpp"
-#include "skyloop/usb/usb_watch.hpp"
 #include "testbed.hpp"
 #include "what_is_held.hpp"
+#include "wire/devices/device_list.hpp"
+#include "wire/usb/usb_context.hpp"
+#include "wire/usb/usb_watch.hpp"
 
 namespace skyloop {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "eventually.hpp"
 #include "mock_cdc_acm.hpp"
-#include "skyloop/transport/open_transport.hpp"
-#include "skyloop/usb/cdc_acm.hpp"
 #include "testbed.hpp"
 #include "what_is_held.hpp"
+#include "wire/transport/open_transport.hpp"
+#include "wire/usb/cdc_acm.hpp"
 
 namespace skyloop {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "eventually.hpp"
 #include "mock_device.hpp"
-#include "skyloop/hid/cp2110.hpp"
-#include "skyloop/transport/open_transport.hpp"
 #include "testbed.hpp"
+#include "wire/hid/cp2110.hpp"
+#include "wire/transport/open_transport.hpp"
 
 namespace skyloop {
 namespace {

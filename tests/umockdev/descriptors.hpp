@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/usb/usb_address.hpp"
+#include "base/core/bytes.hpp"
+#include "wire/usb/usb_address.hpp"
 
 namespace skyloop::mock {
 

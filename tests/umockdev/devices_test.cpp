@@ -4,10 +4,10 @@
 
 #include "as_nobody.hpp"
 #include "mock_cdc_acm.hpp"
-#include "skyloop/hid/hid_device.hpp"
-#include "skyloop/usb/usb_context.hpp"
 #include "testbed.hpp"
 #include "what_is_held.hpp"
+#include "wire/hid/hid_device.hpp"
+#include "wire/usb/usb_context.hpp"
 
 namespace skyloop {
 namespace {

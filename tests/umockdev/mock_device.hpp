@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "skyloop/base/bytes.hpp"
+#include "base/core/bytes.hpp"
 
 namespace skyloop::mock {
 

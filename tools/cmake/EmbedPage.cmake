@@ -14,7 +14,7 @@ foreach(name IN LISTS names)
     string(APPEND rows "    {\"/${name}\", {page_file_${number}, sizeof(page_file_${number})}},\n")
     math(EXPR number "${number} + 1")
 endforeach()
-file(WRITE ${OUT} "#include \"page_files.hpp\"
+file(WRITE ${OUT} "#include \"run/control/detail/page_files.hpp\"
 
 namespace skyloop {
 namespace {

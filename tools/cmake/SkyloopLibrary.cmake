@@ -4,12 +4,29 @@
 set(SKYLOOP_LAYERS_FILE ${PROJECT_SOURCE_DIR}/tools/layers.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${SKYLOOP_LAYERS_FILE})
 
-# The folders that `folder` may include, as written in the table.
-function(skyloop_layer_row folder result)
-    file(STRINGS ${SKYLOOP_LAYERS_FILE} rows REGEX "^${folder}[ ]*:")
+# The folders of all rooms, in the order of the table.
+function(skyloop_room_folders result)
+    file(STRINGS ${SKYLOOP_LAYERS_FILE} rows REGEX "^[^# ]")
+    set(folders "")
+    foreach(row IN LISTS rows)
+        if(row MATCHES "^\\[([a-z-]+) :")
+            set(district ${CMAKE_MATCH_1})
+            if(EXISTS ${PROJECT_SOURCE_DIR}/src/${district})
+                set(district src/${district})
+            endif()
+        elseif(row MATCHES "^([a-z_]+) *:")
+            list(APPEND folders ${district}/${CMAKE_MATCH_1})
+        endif()
+    endforeach()
+    set(${result} ${folders} PARENT_SCOPE)
+endfunction()
+
+# The rooms that `room` may include, as written in the table.
+function(skyloop_layer_row room result)
+    file(STRINGS ${SKYLOOP_LAYERS_FILE} rows REGEX "^${room}[ ]*:")
     list(LENGTH rows count)
     if(NOT count EQUAL 1)
-        message(FATAL_ERROR "tools/layers.txt: expected one row for '${folder}', found ${count}")
+        message(FATAL_ERROR "tools/layers.txt: expected one row for '${room}', found ${count}")
     endif()
     string(REGEX REPLACE "^[^:]*:" "" row "${rows}")
     string(REGEX REPLACE "!.*$" "" row "${row}")
@@ -19,7 +36,8 @@ endfunction()
 
 # Warnings and floating-point rules for every target of the project.
 add_library(skyloop_options INTERFACE)
-target_include_directories(skyloop_options INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/firmware-host)
+target_include_directories(skyloop_options INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src
+                           ${PROJECT_SOURCE_DIR}/firmware-host)
 target_compile_options(skyloop_options INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Woverloaded-virtual
     -ffp-contract=off
@@ -47,7 +65,7 @@ endif()
 
 # Under the sanitizers only the folders that compute, and those that run whole simulations in tests, are optimised: all others
 # read, arrange and speak, compile in half the time as they are written, and their tests do not feel it. Fuzzers do.
-set(SKYLOOP_COMPUTING base time geo gnss flow rinex trajectory sky scene propagation measurement pvt error_model protocol
+set(SKYLOOP_COMPUTING core time geo gnss flow rinex trajectory sky scene propagation measurement pvt error_model protocol
     firmware fault feed emulator)
 function(skyloop_optimise target folder)
     if(SKYLOOP_SANITIZE AND NOT SKYLOOP_FUZZ AND NOT folder IN_LIST SKYLOOP_COMPUTING)

@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "skyloop/scene/generated_city.hpp"
+#include "world/scene/generated_city.hpp"
 
 namespace {
 

@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
+#include "base/core/bytes.hpp"
+#include "base/core/units.hpp"
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
 #include "firmware/port_id.hpp"
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/base/units.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "firmware/port_id.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 

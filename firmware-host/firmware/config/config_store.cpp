@@ -3,7 +3,7 @@
 #include <array>
 #include <charconv>
 
-#include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/result.hpp"
 #include "firmware/config/config_keys.hpp"
-#include "skyloop/base/result.hpp"
 
 namespace skyloop::firmware {
 

@@ -7,7 +7,7 @@
 #include "firmware/config/key_tables.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -2,7 +2,7 @@
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/legacy_support.hpp"
 #include "firmware/geofence.hpp"
-#include "skyloop/protocol/ubx_cfg_navigation.hpp"
+#include "receiver/protocol/ubx_cfg_navigation.hpp"
 
 namespace skyloop::firmware {
 namespace {

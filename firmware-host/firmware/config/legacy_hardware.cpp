@@ -5,7 +5,7 @@
 
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/legacy_support.hpp"
-#include "skyloop/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_hardware.hpp"
 
 namespace skyloop::firmware {
 namespace {

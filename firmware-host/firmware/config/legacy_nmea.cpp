@@ -4,7 +4,7 @@
 
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/legacy_support.hpp"
-#include "skyloop/protocol/ubx_cfg_output.hpp"
+#include "receiver/protocol/ubx_cfg_output.hpp"
 
 namespace skyloop::firmware {
 namespace {

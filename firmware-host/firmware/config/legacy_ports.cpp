@@ -5,8 +5,8 @@
 #include "firmware/board_messages.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/legacy_support.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_cfg_output.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg_output.hpp"
 
 namespace skyloop::firmware {
 namespace {

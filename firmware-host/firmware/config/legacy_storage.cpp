@@ -3,7 +3,7 @@
 
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/legacy_support.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 namespace {

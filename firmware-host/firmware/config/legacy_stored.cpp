@@ -5,8 +5,8 @@
 
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/legacy_support.hpp"
-#include "skyloop/protocol/ubx_cfg_hardware.hpp"
-#include "skyloop/protocol/ubx_cfg_navigation.hpp"
+#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_navigation.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "firmware/config/config_handler.hpp"
-#include "skyloop/protocol/ubx_fields.hpp"
+#include "receiver/protocol/ubx_fields.hpp"
 
 namespace skyloop::firmware {
 

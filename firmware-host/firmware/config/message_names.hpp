@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "firmware/config/config_store.hpp"
-#include "skyloop/flow/receiver_settings.hpp"
-#include "skyloop/gnss/satellite.hpp"
+#include "world/flow/receiver_settings.hpp"
+#include "world/gnss/satellite.hpp"
 
 namespace skyloop::firmware {
 

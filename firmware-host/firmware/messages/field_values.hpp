@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
+#include "base/time/utc_time.hpp"
 #include "firmware/navigation_state.hpp"
-#include "skyloop/gnss/satellite.hpp"
-#include "skyloop/gnss/signal.hpp"
-#include "skyloop/protocol/ubx_fields.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "receiver/protocol/ubx_fields.hpp"
+#include "world/gnss/satellite.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop::firmware {
 

@@ -1,7 +1,7 @@
 #include "firmware/messages/make_message.hpp"
 
 #include "firmware/message_class.hpp"
-#include "skyloop/protocol/ubx_ports.hpp"
+#include "receiver/protocol/ubx_ports.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/monitor_parts.hpp"
-#include "skyloop/protocol/ubx_hardware.hpp"
+#include "receiver/protocol/ubx_hardware.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/monitor_parts.hpp"
-#include "skyloop/protocol/ubx_ports.hpp"
+#include "receiver/protocol/ubx_ports.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -2,11 +2,11 @@
 #include <array>
 #include <cmath>
 
+#include "base/geo/local_frame.hpp"
 #include "firmware/base_place.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/navigation_parts.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/geo/local_frame.hpp"
 #include "firmware/base_place.hpp"
 #include "firmware/error_ellipse.hpp"
 #include "firmware/geofence.hpp"
@@ -11,10 +12,9 @@
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
 #include "firmware/solution_covariance.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_relative.hpp"
-#include "skyloop/protocol/ubx_services.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_relative.hpp"
+#include "receiver/protocol/ubx_services.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -7,8 +7,8 @@
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/navigation_parts.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
+#include "receiver/protocol/ubx_time.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "firmware/navigation_state.hpp"
-#include "skyloop/protocol/nmea_messages.hpp"
-#include "skyloop/protocol/nmea_satellites.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
+#include "receiver/protocol/nmea_satellites.hpp"
 
 namespace skyloop::firmware {
 

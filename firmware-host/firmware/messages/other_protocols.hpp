@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "firmware/navigation_state.hpp"
-#include "skyloop/protocol/mavlink.hpp"
-#include "skyloop/protocol/msp.hpp"
-#include "skyloop/protocol/sbf_blocks.hpp"
+#include "receiver/protocol/mavlink.hpp"
+#include "receiver/protocol/msp.hpp"
+#include "receiver/protocol/sbf_blocks.hpp"
 
 namespace skyloop::firmware {
 

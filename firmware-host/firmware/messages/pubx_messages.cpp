@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "firmware/messages/nmea_report.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/nmea_pubx.hpp"
+#include "receiver/protocol/nmea_pubx.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

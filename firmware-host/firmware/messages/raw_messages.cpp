@@ -7,9 +7,9 @@
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/satellite_parts.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/ubx_raw.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_raw.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <optional>
 
+#include "base/time/utc_time.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/navigation_state.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::firmware {
 

@@ -8,9 +8,9 @@
 #include "firmware/message_class.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/rtcm3.hpp"
-#include "skyloop/protocol/rtcm3_msm.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_msm.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

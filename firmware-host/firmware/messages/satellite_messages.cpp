@@ -4,8 +4,8 @@
 
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/satellite_parts.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
-#include "skyloop/protocol/ubx_services.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_services.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include "firmware/messages/satellite_parts.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 
 namespace skyloop::firmware {
 namespace {

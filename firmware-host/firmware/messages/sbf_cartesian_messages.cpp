@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/geo/local_frame.hpp"
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/messages/sbf_parts.hpp"
 #include "firmware/messages/sbf_status_messages.hpp"
-#include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop::firmware {
 namespace {

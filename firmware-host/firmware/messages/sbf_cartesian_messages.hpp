@@ -2,7 +2,7 @@
 #pragma once
 
 #include "firmware/navigation_state.hpp"
-#include "skyloop/protocol/sbf_cartesian_blocks.hpp"
+#include "receiver/protocol/sbf_cartesian_blocks.hpp"
 
 namespace skyloop::firmware {
 

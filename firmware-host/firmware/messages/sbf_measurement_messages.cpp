@@ -5,7 +5,7 @@
 
 #include "firmware/clock_instant.hpp"
 #include "firmware/messages/sbf_parts.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

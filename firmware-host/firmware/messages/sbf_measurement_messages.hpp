@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/bytes.hpp"
 #include "firmware/navigation_state.hpp"
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/protocol/sbf_measurement_blocks.hpp"
+#include "receiver/protocol/sbf_measurement_blocks.hpp"
 
 namespace skyloop::firmware {
 

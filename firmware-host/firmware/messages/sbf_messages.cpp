@@ -8,7 +8,7 @@
 #include "firmware/messages/reported_fix.hpp"
 #include "firmware/messages/sbf_parts.hpp"
 #include "firmware/solution_covariance.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/core/bit_field.hpp"
 #include "firmware/messages/sbf_measurement_messages.hpp"
 #include "firmware/messages/sbf_parts.hpp"
-#include "skyloop/base/bit_field.hpp"
-#include "skyloop/gnss/broadcast_inav.hpp"
-#include "skyloop/gnss/broadcast_lnav.hpp"
-#include "skyloop/protocol/sbf_navigation_blocks.hpp"
+#include "receiver/protocol/sbf_navigation_blocks.hpp"
+#include "world/gnss/broadcast_inav.hpp"
+#include "world/gnss/broadcast_lnav.hpp"
 
 namespace skyloop::firmware {
 namespace {

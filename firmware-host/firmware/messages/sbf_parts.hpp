@@ -7,7 +7,7 @@
 
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/reported_fix.hpp"
-#include "skyloop/protocol/sbf_blocks.hpp"
+#include "receiver/protocol/sbf_blocks.hpp"
 
 namespace skyloop::firmware {
 

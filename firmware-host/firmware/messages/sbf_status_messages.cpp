@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/geo/local_frame.hpp"
 #include "firmware/messages/sbf_parts.hpp"
-#include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "firmware/messages/other_protocols.hpp"
-#include "skyloop/protocol/sbf_status_blocks.hpp"
+#include "receiver/protocol/sbf_status_blocks.hpp"
 
 namespace skyloop::firmware {
 

@@ -1,7 +1,7 @@
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/nmea_report.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/base/bytes.hpp"
+#include "base/core/bytes.hpp"
 
 namespace skyloop::firmware {
 

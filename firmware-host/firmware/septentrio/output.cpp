@@ -14,7 +14,7 @@
 #include "firmware/messages/sbf_status_messages.hpp"
 #include "firmware/nmea_commands.hpp"
 #include "firmware/septentrio/station_output.hpp"
-#include "skyloop/protocol/sbf_navigation_blocks.hpp"
+#include "receiver/protocol/sbf_navigation_blocks.hpp"
 
 namespace skyloop::firmware {
 namespace {

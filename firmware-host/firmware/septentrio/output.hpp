@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "base/core/bytes.hpp"
 #include "firmware/messages/sbf_measurement_messages.hpp"
 #include "firmware/navigation_state.hpp"
 #include "firmware/septentrio/settings.hpp"
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/protocol/sbf_cartesian_blocks.hpp"
+#include "receiver/protocol/sbf_cartesian_blocks.hpp"
 
 namespace skyloop::firmware {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/core/lowered_text.hpp"
 #include "firmware/nmea_commands.hpp"
-#include "skyloop/base/lowered_text.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -11,7 +11,7 @@
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/reported_fix.hpp"
 #include "firmware/septentrio/modes.hpp"
-#include "skyloop/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3.hpp"
 
 namespace skyloop::firmware {
 namespace {

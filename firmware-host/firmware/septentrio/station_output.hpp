@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/bytes.hpp"
+#include "base/geo/geodetic.hpp"
 #include "firmware/navigation_state.hpp"
 #include "firmware/septentrio/settings.hpp"
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/geo/geodetic.hpp"
 
 namespace skyloop::firmware {
 

@@ -1,5 +1,5 @@
 // What a user may type as power, and what is said of all else.
-#include "skyloop/actuator/actuator_uri.hpp"
+#include "wire/actuator/actuator_uri.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

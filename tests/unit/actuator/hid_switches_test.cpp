@@ -1,5 +1,5 @@
 // The reports of relay boards and of the MCP2221A, byte by byte.
-#include "skyloop/actuator/hid_switches.hpp"
+#include "wire/actuator/hid_switches.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

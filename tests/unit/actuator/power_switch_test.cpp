@@ -1,5 +1,5 @@
 // A run's switch: it never keeps the loop waiting, tells what failed, and leaves the power on.
-#include "skyloop/actuator/power_switch.hpp"
+#include "wire/actuator/power_switch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

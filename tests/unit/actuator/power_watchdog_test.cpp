@@ -1,5 +1,5 @@
 // Who restores when the program cannot: a process that dies, here a child of the test.
-#include "skyloop/actuator/power_watchdog.hpp"
+#include "wire/actuator/power_watchdog.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <fstream>
 #include <functional>
 
-#include "skyloop/actuator/actuator_uri.hpp"
-#include "skyloop/actuator/power_switch.hpp"
 #include "told_orders.hpp"
+#include "wire/actuator/actuator_uri.hpp"
+#include "wire/actuator/power_switch.hpp"
 
 namespace skyloop {
 namespace {

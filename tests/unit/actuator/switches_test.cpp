@@ -7,8 +7,8 @@
 
 #include <cerrno>
 
-#include "skyloop/actuator/modem_line.hpp"
 #include "told_orders.hpp"
+#include "wire/actuator/modem_line.hpp"
 
 namespace skyloop {
 namespace {

@@ -7,15 +7,15 @@
 #include <numbers>
 #include <set>
 
-#include "../../../src/analysis/ubx_frames.hpp"
 #include "../../support/oracle_table.hpp"
-#include "skyloop/base/bit_field.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/gnss/broadcast_d1.hpp"
-#include "skyloop/gnss/broadcast_glonass.hpp"
-#include "skyloop/gnss/broadcast_inav.hpp"
-#include "skyloop/gnss/broadcast_lnav.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
+#include "base/core/bit_field.hpp"
+#include "base/core/text_file.hpp"
+#include "study/analysis/detail/ubx_frames.hpp"
+#include "world/gnss/broadcast_d1.hpp"
+#include "world/gnss/broadcast_glonass.hpp"
+#include "world/gnss/broadcast_inav.hpp"
+#include "world/gnss/broadcast_lnav.hpp"
+#include "world/rinex/navigation_file.hpp"
 
 namespace skyloop {
 namespace {

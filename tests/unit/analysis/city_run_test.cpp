@@ -1,4 +1,4 @@
-#include "skyloop/analysis/city_run.hpp"
+#include "study/analysis/city_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "skyloop/analysis/comparison.hpp"
-#include "skyloop/base/random.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "base/core/random.hpp"
+#include "base/geo/local_frame.hpp"
+#include "study/analysis/comparison.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "skyloop/analysis/comparison.hpp"
+#include "study/analysis/comparison.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "base/core/random.hpp"
+#include "base/geo/local_frame.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "skyloop/analysis/coverage_map.hpp"
+#include "study/analysis/coverage_map.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "skyloop/gnss/dop.hpp"
 #include "unit/analysis/scene_shapes.hpp"
+#include "world/gnss/dop.hpp"
 
 namespace skyloop {
 namespace {

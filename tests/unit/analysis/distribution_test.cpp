@@ -1,12 +1,12 @@
-#include "skyloop/analysis/distribution.hpp"
+#include "study/analysis/distribution.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "skyloop/analysis/signal_strength.hpp"
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
+#include "study/analysis/signal_strength.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/analysis/fix_series.hpp"
+#include "study/analysis/fix_series.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/analysis/fix_series.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
+#include "study/analysis/fix_series.hpp"
 
 namespace skyloop {
 namespace {

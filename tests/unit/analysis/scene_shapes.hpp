@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "skyloop/scene/generated_city.hpp"
-#include "skyloop/scene/urban_scene.hpp"
+#include "world/scene/generated_city.hpp"
+#include "world/scene/urban_scene.hpp"
 
 namespace skyloop::test {
 

@@ -1,11 +1,11 @@
-#include "skyloop/analysis/scene_sky.hpp"
+#include "study/analysis/scene_sky.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/scene/path_finder.hpp"
 #include "unit/analysis/scene_shapes.hpp"
+#include "world/scene/path_finder.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,10 +1,10 @@
-#include "skyloop/analysis/sky_listing.hpp"
+#include "study/analysis/sky_listing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/analysis/tracks_csv.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
+#include "study/analysis/tracks_csv.hpp"
 
 namespace skyloop {
 namespace {

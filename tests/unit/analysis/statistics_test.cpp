@@ -1,11 +1,11 @@
-#include "skyloop/analysis/statistics.hpp"
+#include "study/analysis/statistics.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

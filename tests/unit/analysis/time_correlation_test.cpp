@@ -1,12 +1,12 @@
-#include "skyloop/analysis/time_correlation.hpp"
+#include "study/analysis/time_correlation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "skyloop/analysis/comparison.hpp"
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
+#include "study/analysis/comparison.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "skyloop/analysis/fix_series.hpp"
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/core/bytes.hpp"
+#include "base/time/utc_time.hpp"
+#include "study/analysis/fix_series.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

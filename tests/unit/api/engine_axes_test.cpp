@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "skyloop/geo/attitude.hpp"
+#include "base/geo/attitude.hpp"
 
 namespace {
 

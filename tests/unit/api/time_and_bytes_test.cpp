@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "led_run.hpp"
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/scenario/scenario_file.hpp"
 #include "support/oracle_table.hpp"
 
 namespace {

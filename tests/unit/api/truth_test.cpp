@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/geo/geoid.hpp"
+#include "base/geo/local_frame.hpp"
 #include "led_run.hpp"
-#include "skyloop/geo/geoid.hpp"
-#include "skyloop/geo/local_frame.hpp"
 #include "support/oracle_table.hpp"
 
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/campaign/campaign_design.hpp"
+#include "campaigns/campaign/campaign_design.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

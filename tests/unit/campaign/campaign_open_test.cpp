@@ -4,7 +4,7 @@
 #include <fstream>
 #include <future>
 
-#include "skyloop/campaign/campaign_folder.hpp"
+#include "campaigns/campaign/campaign_folder.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

@@ -1,11 +1,11 @@
-#include "skyloop/campaign/campaign_plan.hpp"
+#include "campaigns/campaign/campaign_plan.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "skyloop/scenario/scenario_file.hpp"
+#include "run/scenario/scenario_file.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/campaign/keyed_files.hpp"
+#include "campaigns/campaign/keyed_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

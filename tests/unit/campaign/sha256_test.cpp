@@ -1,4 +1,4 @@
-#include "skyloop/campaign/sha256.hpp"
+#include "campaigns/campaign/sha256.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/campaign/shard_file.hpp"
+#include "campaigns/campaign/shard_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "skyloop/campaign/campaign_database.hpp"
-#include "skyloop/campaign/campaign_folder.hpp"
+#include "campaigns/campaign/campaign_database.hpp"
+#include "campaigns/campaign/campaign_folder.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "../../../src/campaign/vehicle_files.hpp"
+#include "campaigns/campaign/detail/vehicle_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "skyloop/campaign/worker_pool.hpp"
+#include "campaigns/campaign/worker_pool.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The page, the numbers and the words of small campaigns.
-#include "skyloop/campaign_report/campaign_report.hpp"
+#include "campaigns/campaign_report/campaign_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

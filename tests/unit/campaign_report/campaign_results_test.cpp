@@ -1,13 +1,13 @@
 // What is read of a database, and what is refused.
-#include "skyloop/campaign_report/campaign_results.hpp"
+#include "campaigns/campaign_report/campaign_results.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/campaign_report/campaign_report.hpp"
+#include "base/core/random.hpp"
+#include "campaigns/campaign_report/campaign_report.hpp"
 #include "unit/campaign_report/small_database.hpp"
 
 namespace skyloop {

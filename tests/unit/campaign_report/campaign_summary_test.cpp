@@ -1,5 +1,5 @@
 // The statistics of campaigns whose truth is known.
-#include "skyloop/campaign_report/campaign_summary.hpp"
+#include "campaigns/campaign_report/campaign_summary.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Intervals against tables made by others, and how often they hold.
-#include "skyloop/campaign_report/intervals.hpp"
+#include "campaigns/campaign_report/intervals.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

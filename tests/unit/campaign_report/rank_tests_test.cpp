@@ -1,10 +1,10 @@
 // Rank tests against scipy, and how often they cry wolf.
-#include "skyloop/campaign_report/rank_tests.hpp"
+#include "campaigns/campaign_report/rank_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

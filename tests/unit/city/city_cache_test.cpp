@@ -1,5 +1,5 @@
 // Cities that were read are kept, and what is kept is believed only when it is whole and of the same source.
-#include "skyloop/city/city_cache.hpp"
+#include "world/city/city_cache.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

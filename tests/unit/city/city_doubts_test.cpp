@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "skyloop/city/city_file.hpp"
+#include "world/city/city_file.hpp"
 
 namespace skyloop::city_doubts_test {
 namespace {

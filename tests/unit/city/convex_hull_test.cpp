@@ -1,4 +1,4 @@
-#include "../../../src/city/convex_hull.hpp"
+#include "world/city/detail/convex_hull.hpp"
 
 #include <gtest/gtest.h>
 

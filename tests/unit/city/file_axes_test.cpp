@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "skyloop/city/city_file.hpp"
+#include "world/city/city_file.hpp"
 
 namespace skyloop::file_axes_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/city/footprint.hpp"
+#include "world/city/footprint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop::test {
 namespace {

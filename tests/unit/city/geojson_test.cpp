@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "base/geo/local_frame.hpp"
 #include "mesh_support.hpp"
-#include "skyloop/city/city_file.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "world/city/city_file.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <string>
 
-#include "skyloop/city/city_file.hpp"
+#include "world/city/city_file.hpp"
 
 namespace skyloop::test {
 

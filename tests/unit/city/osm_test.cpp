@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "base/core/text_file.hpp"
 #include "mesh_support.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/city/city_file.hpp"
 #include "support/oracle_table.hpp"
+#include "world/city/city_file.hpp"
 
 namespace skyloop::test {
 namespace {

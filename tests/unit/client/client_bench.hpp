@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "skyloop/client/open_client.hpp"
-#include "skyloop/protocol/nmea_messages.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_time.hpp"
+#include "run/client/open_client.hpp"
 
 namespace skyloop::test {
 

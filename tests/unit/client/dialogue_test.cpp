@@ -1,7 +1,7 @@
+#include "base/core/random.hpp"
 #include "client_bench.hpp"
-#include "skyloop/base/random.hpp"
-#include "skyloop/client/configuration_dialogue.hpp"
-#include "skyloop/client/port_hunt.hpp"
+#include "run/client/configuration_dialogue.hpp"
+#include "run/client/port_hunt.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,5 +1,5 @@
 #include "client_bench.hpp"
-#include "skyloop/client/ubx_solution.hpp"
+#include "run/client/ubx_solution.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/control/command_json.hpp"
+#include "run/control/command_json.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

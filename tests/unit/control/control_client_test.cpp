@@ -1,4 +1,4 @@
-#include "skyloop/control/control_client.hpp"
+#include "run/control/control_client.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/control/control_request.hpp"
+#include "run/control/control_request.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

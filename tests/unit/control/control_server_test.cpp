@@ -1,4 +1,4 @@
-#include "skyloop/control/control_server.hpp"
+#include "run/control/control_server.hpp"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "skyloop/control/control_client.hpp"
+#include "run/control/control_client.hpp"
 #include "snapshots.hpp"
 
 namespace skyloop::test {

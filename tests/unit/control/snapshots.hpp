@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "skyloop/emulator/status_snapshot.hpp"
+#include "run/emulator/status_snapshot.hpp"
 
 namespace skyloop::test {
 

@@ -1,4 +1,4 @@
-#include "skyloop/control/status_json.hpp"
+#include "run/control/status_json.hpp"
 
 #include <gtest/gtest.h>
 

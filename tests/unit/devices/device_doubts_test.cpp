@@ -8,7 +8,7 @@
 #include <fstream>
 #include <functional>
 
-#include "skyloop/devices/device_list.hpp"
+#include "wire/devices/device_list.hpp"
 
 namespace skyloop {
 namespace {

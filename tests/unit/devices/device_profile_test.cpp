@@ -1,4 +1,4 @@
-#include "skyloop/devices/device_profile.hpp"
+#include "wire/devices/device_profile.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

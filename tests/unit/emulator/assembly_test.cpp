@@ -1,5 +1,5 @@
 // What a scenario becomes, and what it is refused for.
-#include "skyloop/emulator/assembly.hpp"
+#include "run/emulator/assembly.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "skyloop/emulator/deadline_grants.hpp"
+#include "run/emulator/deadline_grants.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

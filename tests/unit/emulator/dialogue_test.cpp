@@ -1,12 +1,12 @@
 // Messages that are found in what both ends of a wire say.
-#include "skyloop/emulator/dialogue.hpp"
+#include "run/emulator/dialogue.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
 
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 #include "support/run_parts.hpp"
 
 namespace skyloop {

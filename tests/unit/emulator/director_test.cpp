@@ -1,11 +1,11 @@
 // Faults and commands in a run: their beginning, their effect on the wire, their end without residue.
-#include "skyloop/emulator/director.hpp"
+#include "run/emulator/director.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/feed/failure_injection.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "run/feed/failure_injection.hpp"
 #include "support/run_parts.hpp"
 
 namespace skyloop::test {

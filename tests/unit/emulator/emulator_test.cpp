@@ -1,5 +1,5 @@
 // The loop: its epochs, its bytes and its ends.
-#include "skyloop/emulator/emulator.hpp"
+#include "run/emulator/emulator.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <csignal>
 #include <set>
 
-#include "skyloop/protocol/nmea_decode.hpp"
+#include "receiver/protocol/nmea_decode.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 // When epochs are, also after a client has changed their period.
-#include "skyloop/emulator/epoch_grid.hpp"
+#include "run/emulator/epoch_grid.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "skyloop/fault/fault_kind.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
+#include "run/fault/fault_kind.hpp"
 #include "support/fault_rows.hpp"
 
 namespace skyloop::test {

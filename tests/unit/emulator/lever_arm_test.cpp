@@ -1,12 +1,12 @@
 // Antennas beside the path of their vehicle.
-#include "skyloop/emulator/lever_arm.hpp"
+#include "run/emulator/lever_arm.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/trajectory/geometric_paths.hpp"
+#include "base/geo/local_frame.hpp"
+#include "motion/trajectory/geometric_paths.hpp"
 
 namespace skyloop {
 namespace {

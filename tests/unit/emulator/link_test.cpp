@@ -1,11 +1,11 @@
-#include "skyloop/emulator/link.hpp"
+#include "run/emulator/link.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "skyloop/transport/memory.hpp"
+#include "wire/transport/memory.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // What becomes of a run whose source of truth falls silent.
-#include "skyloop/emulator/live_feeds.hpp"
+#include "run/emulator/live_feeds.hpp"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -9,10 +9,10 @@
 
 #include <thread>
 
-#include "skyloop/base/steady_clock.hpp"
-#include "skyloop/emulator/run_summary.hpp"
-#include "skyloop/transport/file_descriptor.hpp"
+#include "base/core/steady_clock.hpp"
+#include "run/emulator/run_summary.hpp"
 #include "support/run_parts.hpp"
+#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

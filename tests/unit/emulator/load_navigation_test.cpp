@@ -4,8 +4,8 @@
 
 #include <numeric>
 
-#include "skyloop/emulator/navigation_files.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
+#include "run/emulator/navigation_files.hpp"
 #include "support/run_parts.hpp"
 #include "unit/rinex/navigation_text.hpp"
 #include "unit/transport/temporary_folder.hpp"

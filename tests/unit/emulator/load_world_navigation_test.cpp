@@ -3,8 +3,8 @@
 
 #include <set>
 
-#include "skyloop/emulator/assembly.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
+#include "run/emulator/assembly.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop::test {

@@ -6,14 +6,14 @@
 #include <map>
 #include <set>
 
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/rinex/navigation_writer.hpp"
-#include "skyloop/rinex/observation_reader.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/four_systems.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/rinex/navigation_file.hpp"
+#include "world/rinex/navigation_writer.hpp"
+#include "world/rinex/observation_reader.hpp"
 
 namespace skyloop {
 namespace {

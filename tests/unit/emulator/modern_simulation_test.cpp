@@ -1,7 +1,7 @@
 // The modern profile as a scenario asks for it, on the nominal constellation.
 #include <gtest/gtest.h>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 #include "support/run_parts.hpp"
 
 namespace skyloop {

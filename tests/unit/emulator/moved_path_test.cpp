@@ -1,8 +1,8 @@
-#include "skyloop/emulator/moved_path.hpp"
+#include "run/emulator/moved_path.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 
 namespace skyloop::test {
 namespace {

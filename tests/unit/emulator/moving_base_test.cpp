@@ -1,11 +1,11 @@
 // The vector between two antennas, as its rover solves it.
-#include "skyloop/emulator/moving_base.hpp"
+#include "run/emulator/moving_base.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/emulator/output_file.hpp"
+#include "run/emulator/output_file.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

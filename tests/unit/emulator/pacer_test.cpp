@@ -1,4 +1,4 @@
-#include "skyloop/emulator/pacer.hpp"
+#include "run/emulator/pacer.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -6,7 +6,7 @@
 
 #include <csignal>
 
-#include "skyloop/emulator/lateness.hpp"
+#include "run/emulator/lateness.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "skyloop/emulator/run_summary.hpp"
+#include "run/emulator/run_summary.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 

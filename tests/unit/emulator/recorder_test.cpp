@@ -1,5 +1,5 @@
 // What a run leaves behind: tables whose columns hold what their header says.
-#include "skyloop/emulator/recorder.hpp"
+#include "run/emulator/recorder.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,11 +9,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "skyloop/emulator/run_summary.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "base/geo/local_frame.hpp"
+#include "run/emulator/run_summary.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

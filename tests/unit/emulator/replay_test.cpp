@@ -1,4 +1,4 @@
-#include "skyloop/emulator/replay.hpp"
+#include "run/emulator/replay.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "skyloop/transport/file.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
+#include "wire/transport/file.hpp"
 
 namespace skyloop {
 namespace {

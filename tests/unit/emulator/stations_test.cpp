@@ -1,5 +1,5 @@
 // Several receivers on one vehicle and one clock, and the ports of each.
-#include "skyloop/emulator/station.hpp"
+#include "run/emulator/station.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "skyloop/emulator/run_summary.hpp"
-#include "skyloop/emulator/wires.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
+#include "run/emulator/run_summary.hpp"
+#include "run/emulator/wires.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "skyloop/emulator/status_board.hpp"
+#include "run/emulator/status_board.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/emulator/thread_priority.hpp"
+#include "run/emulator/thread_priority.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

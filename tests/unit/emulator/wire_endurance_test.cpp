@@ -10,12 +10,12 @@
 #include <cmath>
 #include <functional>
 
-#include "skyloop/transport/pty.hpp"
-#include "skyloop/transport/rfc2217.hpp"
-#include "skyloop/transport/serial.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/tcp_peer.hpp"
 #include "unit/transport/temporary_folder.hpp"
+#include "wire/transport/pty.hpp"
+#include "wire/transport/rfc2217.hpp"
+#include "wire/transport/serial.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/client/open_client.hpp"
-#include "skyloop/fault/fault_kind.hpp"
+#include "run/client/open_client.hpp"
+#include "run/fault/fault_kind.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 

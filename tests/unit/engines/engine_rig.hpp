@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-#include "skyloop/engines/engine_task.hpp"
+#include "campaigns/engines/engine_task.hpp"
 
 namespace skyloop::test {
 

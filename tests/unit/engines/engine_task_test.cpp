@@ -1,12 +1,12 @@
-#include "skyloop/engines/engine_task.hpp"
+#include "campaigns/engines/engine_task.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cstdint>
 #include <limits>
 
+#include "campaigns/engines/engine_files.hpp"
 #include "engine_rig.hpp"
-#include "skyloop/engines/engine_files.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // The manifests' values; a parser of YAML and a schema look at them in tests/cluster.
-#include "skyloop/engines/kubernetes_manifest.hpp"
+#include "campaigns/engines/kubernetes_manifest.hpp"
 
 #include <gmock/gmock.h>
 

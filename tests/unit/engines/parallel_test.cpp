@@ -1,9 +1,9 @@
 // The scripts for GNU parallel, run by it on this machine; skipped by name where it is absent.
 #include <gmock/gmock.h>
 
+#include "base/core/process.hpp"
+#include "campaigns/engines/parallel_scripts.hpp"
 #include "engine_rig.hpp"
-#include "skyloop/base/process.hpp"
-#include "skyloop/engines/parallel_scripts.hpp"
 
 namespace skyloop {
 namespace {

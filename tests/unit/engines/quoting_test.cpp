@@ -1,12 +1,12 @@
 // Words that another language reads back as they were; a real shell is asked.
-#include "skyloop/engines/quoting.hpp"
+#include "campaigns/engines/quoting.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "skyloop/base/process.hpp"
+#include "base/core/process.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,10 +1,10 @@
 // Batch scripts that run in a Slurm of four shell scripts, and who follows them there.
 #include <gmock/gmock.h>
 
+#include "base/core/process.hpp"
+#include "campaigns/engines/engine_files.hpp"
+#include "campaigns/engines/slurm_job.hpp"
 #include "engine_rig.hpp"
-#include "skyloop/base/process.hpp"
-#include "skyloop/engines/engine_files.hpp"
-#include "skyloop/engines/slurm_job.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,10 +1,10 @@
-#include "skyloop/error_model/baseline.hpp"
+#include "receiver/error_model/baseline.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 #include "support/flat_geoid.hpp"
 #include "support/model_sky.hpp"
 

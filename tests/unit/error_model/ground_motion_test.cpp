@@ -1,4 +1,4 @@
-#include "skyloop/error_model/ground_motion.hpp"
+#include "receiver/error_model/ground_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,17 +1,17 @@
-#include "skyloop/error_model/make_error_model.hpp"
+#include "receiver/error_model/make_error_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <typeinfo>
 
-#include "skyloop/error_model/baseline.hpp"
-#include "skyloop/error_model/constant_sigma.hpp"
-#include "skyloop/error_model/ideal.hpp"
-#include "skyloop/error_model/model_effects.hpp"
-#include "skyloop/error_model/refraction.hpp"
-#include "skyloop/error_model/satellite_count.hpp"
-#include "skyloop/error_model/whole_path.hpp"
+#include "receiver/error_model/baseline.hpp"
+#include "receiver/error_model/constant_sigma.hpp"
+#include "receiver/error_model/ideal.hpp"
+#include "receiver/error_model/model_effects.hpp"
+#include "receiver/error_model/refraction.hpp"
+#include "receiver/error_model/satellite_count.hpp"
+#include "receiver/error_model/whole_path.hpp"
 #include "support/model_sky.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "skyloop/error_model/selection.hpp"
+#include "receiver/error_model/selection.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "skyloop/error_model/satellite_count.hpp"
-#include "skyloop/error_model/uere.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
+#include "receiver/error_model/satellite_count.hpp"
+#include "receiver/error_model/uere.hpp"
 #include "support/model_sky.hpp"
 
 namespace skyloop {

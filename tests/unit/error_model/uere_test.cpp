@@ -1,4 +1,4 @@
-#include "skyloop/error_model/uere.hpp"
+#include "receiver/error_model/uere.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/propagation/niell_troposphere_delay.hpp"
-#include "skyloop/propagation/tec_ionosphere_delay.hpp"
 #include "support/model_sky.hpp"
 #include "support/oracle_table.hpp"
+#include "world/propagation/niell_troposphere_delay.hpp"
+#include "world/propagation/tec_ionosphere_delay.hpp"
 
 namespace skyloop {
 namespace {

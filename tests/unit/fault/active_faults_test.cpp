@@ -1,4 +1,4 @@
-#include "skyloop/fault/active_faults.hpp"
+#include "run/fault/active_faults.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <array>
 #include <string>
 
+#include "base/geo/local_frame.hpp"
 #include "receiver_bench.hpp"
-#include "skyloop/fault/checked_command.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "run/fault/checked_command.hpp"
 
 namespace skyloop::fault_test {
 namespace {

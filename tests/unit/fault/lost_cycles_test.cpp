@@ -1,8 +1,8 @@
-#include "skyloop/fault/lost_cycles.hpp"
+#include "run/fault/lost_cycles.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/gnss/constants.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/fault/planned_events.hpp"
+#include "run/fault/planned_events.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "receiver/protocol/ubx_relative.hpp"
 #include "receiver_bench.hpp"
-#include "skyloop/fault/checked_command.hpp"
-#include "skyloop/protocol/ubx_relative.hpp"
+#include "run/fault/checked_command.hpp"
 
 namespace skyloop {
 namespace {

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "../firmware/sample_epochs.hpp"
+#include "base/geo/local_frame.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/receiver.hpp"
-#include "skyloop/fault/fault_kind.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "run/fault/fault_kind.hpp"
 
 namespace skyloop::fault_test {
 

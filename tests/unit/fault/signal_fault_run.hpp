@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "skyloop/fault/fault_kind.hpp"
-#include "skyloop/propagation/free_space.hpp"
-#include "skyloop/sky/observe_sky.hpp"
+#include "run/fault/fault_kind.hpp"
 #include "support/model_sky.hpp"
 #include "support/modern_run.hpp"
+#include "world/propagation/free_space.hpp"
+#include "world/sky/observe_sky.hpp"
 
 namespace skyloop::test {
 

@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "../../../src/fault/false_place.hpp"
+#include "motion/trajectory/geometric_paths.hpp"
+#include "run/fault/detail/false_place.hpp"
 #include "signal_fault_run.hpp"
-#include "skyloop/trajectory/geometric_paths.hpp"
 
 namespace skyloop {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "firmware/messages/field_values.hpp"
+#include "receiver/protocol/ubx_time.hpp"
 #include "receiver_bench.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
 
 namespace skyloop {
 namespace {

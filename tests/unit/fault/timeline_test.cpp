@@ -1,15 +1,15 @@
-#include "skyloop/fault/timeline.hpp"
+#include "run/fault/timeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "skyloop/fault/checked_command.hpp"
-#include "skyloop/fault/command.hpp"
-#include "skyloop/fault/fault_kind.hpp"
-#include "skyloop/fault/known_names.hpp"
-#include "skyloop/fault/timeline_keys.hpp"
+#include "run/fault/checked_command.hpp"
+#include "run/fault/command.hpp"
+#include "run/fault/fault_kind.hpp"
+#include "run/fault/known_names.hpp"
+#include "run/fault/timeline_keys.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/fault/wire_damage.hpp"
+#include "run/fault/wire_damage.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <map>
 #include <utility>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/protocol/mavlink.hpp"
-#include "skyloop/protocol/msp.hpp"
+#include "base/core/random.hpp"
+#include "receiver/protocol/mavlink.hpp"
+#include "receiver/protocol/msp.hpp"
 #include "wire_stream.hpp"
 
 namespace skyloop {

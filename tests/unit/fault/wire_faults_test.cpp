@@ -6,8 +6,8 @@
 #include <set>
 #include <variant>
 
-#include "skyloop/fault/fault_kind.hpp"
-#include "skyloop/fault/wire_damage.hpp"
+#include "run/fault/fault_kind.hpp"
+#include "run/fault/wire_damage.hpp"
 #include "wire_stream.hpp"
 
 namespace skyloop {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/base/bytes.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
-#include "skyloop/time/gps_time.hpp"
+#include "base/core/bytes.hpp"
+#include "base/time/gps_time.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::test {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "skyloop/base/bytes.hpp"
+#include "base/core/bytes.hpp"
 
 namespace skyloop {
 

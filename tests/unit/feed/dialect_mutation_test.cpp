@@ -4,8 +4,8 @@
 #include <random>
 
 #include "dialect_pose.hpp"
-#include "skyloop/feed/feed_dialect.hpp"
-#include "skyloop/protocol/mavlink_vehicle.hpp"
+#include "receiver/protocol/mavlink_vehicle.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <memory>
 
-#include "skyloop/feed/feed_dialect.hpp"
-#include "skyloop/geo/local_map.hpp"
+#include "base/geo/local_map.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
 

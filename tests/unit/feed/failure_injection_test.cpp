@@ -1,11 +1,11 @@
-#include "skyloop/feed/failure_injection.hpp"
+#include "run/feed/failure_injection.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "skyloop/fault/fault_kind.hpp"
+#include "run/fault/fault_kind.hpp"
 
 namespace skyloop {
 namespace {

@@ -3,7 +3,7 @@
 #include <random>
 #include <string>
 
-#include "skyloop/feed/truth_feed.hpp"
+#include "run/feed/truth_feed.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "skyloop/feed/feed_dialect.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
 

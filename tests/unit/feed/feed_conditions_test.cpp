@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/trajectory/live_path.hpp"
-#include "skyloop/trajectory/source_clock.hpp"
+#include "base/geo/local_frame.hpp"
+#include "motion/trajectory/live_path.hpp"
+#include "motion/trajectory/source_clock.hpp"
 
 namespace skyloop {
 namespace {

@@ -9,9 +9,9 @@
 #include <iostream>
 #include <thread>
 
-#include "skyloop/base/steady_clock.hpp"
-#include "skyloop/feed/truth_feed.hpp"
-#include "skyloop/transport/file_descriptor.hpp"
+#include "base/core/steady_clock.hpp"
+#include "run/feed/truth_feed.hpp"
+#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

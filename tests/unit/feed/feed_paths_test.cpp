@@ -1,4 +1,4 @@
-#include "../../../src/feed/feed_paths.hpp"
+#include "run/feed/detail/feed_paths.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include "base/core/text_file.hpp"
+#include "base/geo/local_frame.hpp"
 #include "feed_asides.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/feed/feed_dialect.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
 namespace {

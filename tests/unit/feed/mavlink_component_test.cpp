@@ -1,10 +1,10 @@
-#include "skyloop/feed/mavlink_component.hpp"
+#include "run/feed/mavlink_component.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/protocol/mavlink_modes.hpp"
+#include "base/core/random.hpp"
+#include "receiver/protocol/mavlink_modes.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,7 +5,7 @@
 #include "dialect_bytes.hpp"
 #include "dialect_pose.hpp"
 #include "mavlink_frames.hpp"
-#include "skyloop/feed/feed_dialect.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/feed/mavlink_endpoint.hpp"
+#include "run/feed/mavlink_endpoint.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "dialect_bytes.hpp"
 #include "dialect_pose.hpp"
-#include "skyloop/feed/feed_dialect.hpp"
-#include "skyloop/trajectory/live_path.hpp"
+#include "motion/trajectory/live_path.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
 namespace {

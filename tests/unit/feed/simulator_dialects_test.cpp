@@ -6,7 +6,7 @@
 #include "dialect_bytes.hpp"
 #include "dialect_pose.hpp"
 #include "feed_asides.hpp"
-#include "skyloop/feed/feed_dialect.hpp"
+#include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
 namespace {

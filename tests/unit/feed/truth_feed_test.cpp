@@ -1,4 +1,4 @@
-#include "skyloop/feed/truth_feed.hpp"
+#include "run/feed/truth_feed.hpp"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -14,9 +14,9 @@
 #include <string>
 #include <thread>
 
+#include "base/core/steady_clock.hpp"
 #include "dialect_bytes.hpp"
-#include "skyloop/base/steady_clock.hpp"
-#include "skyloop/transport/file_descriptor.hpp"
+#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "../../../tools/examples/unreal/SkyloopAxes.h"
-#include "skyloop/geo/attitude.hpp"
+#include "base/geo/attitude.hpp"
 
 namespace skyloop {
 namespace {

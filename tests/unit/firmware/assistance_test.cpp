@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "firmware/receiver.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "base/geo/local_frame.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "firmware/config/message_names.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
 
 namespace skyloop::firmware {
 namespace {

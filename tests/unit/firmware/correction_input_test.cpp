@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "skyloop/protocol/rtcm3.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 namespace {

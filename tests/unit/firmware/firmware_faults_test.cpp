@@ -3,14 +3,14 @@
 
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/receiver.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_raw.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_time.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_raw.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

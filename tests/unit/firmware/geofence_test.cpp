@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string>
 
+#include "base/geo/geodesic.hpp"
 #include "legacy_bench.hpp"
-#include "skyloop/geo/geodesic.hpp"
-#include "skyloop/protocol/ubx_cfg_navigation.hpp"
-#include "skyloop/protocol/ubx_services.hpp"
+#include "receiver/protocol/ubx_cfg_navigation.hpp"
+#include "receiver/protocol/ubx_services.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

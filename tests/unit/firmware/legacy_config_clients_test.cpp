@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "legacy_bench.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 namespace {

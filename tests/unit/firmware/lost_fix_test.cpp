@@ -5,11 +5,11 @@
 #include <tuple>
 
 #include "firmware/state_tracker.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_services.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_services.hpp"
+#include "receiver/protocol/ubx_time.hpp"
 #include "ubx_reports.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "skyloop/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_names.hpp"
 #include "support/ubx_message_types.hpp"
 #include "ubx_reports.hpp"
 

@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
-#include "skyloop/protocol/ubx_hardware.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_ports.hpp"
-#include "skyloop/protocol/ubx_security.hpp"
+#include "receiver/protocol/ubx_hardware.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_ports.hpp"
+#include "receiver/protocol/ubx_security.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_relative.hpp"
-#include "skyloop/protocol/ubx_services.hpp"
+#include "base/geo/local_frame.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_relative.hpp"
+#include "receiver/protocol/ubx_services.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "receiver/protocol/ubx_mon.hpp"
 #include "sample_reports.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "sample_epochs.hpp"
-#include "skyloop/gnss/signal.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "skyloop/protocol/ubx_raw.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_raw.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

@@ -1,13 +1,13 @@
 // What a receiver makes of corrections, and what it tells of them.
 #include <gtest/gtest.h>
 
+#include "base/geo/geodetic.hpp"
 #include "firmware/messages/satellite_parts.hpp"
 #include "firmware/receiver.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/geo/geodetic.hpp"
-#include "skyloop/protocol/rtcm3.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 namespace {

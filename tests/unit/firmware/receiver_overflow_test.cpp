@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "firmware/receiver.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_ports.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_ports.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -10,15 +10,15 @@
 
 #include "firmware/config/config_keys.hpp"
 #include "firmware/receiver.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_raw.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_cfg_hardware.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_raw.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/random.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/receiver_core.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/base/random.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
 namespace {

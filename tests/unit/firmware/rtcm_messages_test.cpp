@@ -3,13 +3,13 @@
 
 #include <map>
 
+#include "base/geo/geodetic.hpp"
 #include "firmware/receiver.hpp"
-#include "skyloop/geo/geodetic.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/rtcm3.hpp"
-#include "skyloop/protocol/rtcm3_msm.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_msm.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 #include "ubx_reports.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "base/time/utc_time.hpp"
 #include "firmware/board_profile.hpp"
-#include "skyloop/flow/epoch.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "world/flow/epoch.hpp"
 
 namespace skyloop::firmware {
 

@@ -11,8 +11,8 @@
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/nmea_commands.hpp"
+#include "receiver/protocol/nmea_decode.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/protocol/nmea_decode.hpp"
 
 namespace skyloop::firmware {
 

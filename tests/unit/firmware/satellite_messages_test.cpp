@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "firmware/messages/field_values.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
-#include "skyloop/protocol/ubx_services.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_services.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

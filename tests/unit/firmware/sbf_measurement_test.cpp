@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/geo/geodetic.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/sbf_cartesian_messages.hpp"
 #include "firmware/messages/sbf_measurement_messages.hpp"
@@ -11,11 +12,10 @@
 #include "firmware/messages/sbf_status_messages.hpp"
 #include "firmware/septentrio/modes.hpp"
 #include "firmware/septentrio/output.hpp"
+#include "receiver/protocol/sbf_navigation_blocks.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/geo/geodetic.hpp"
-#include "skyloop/gnss/broadcast_lnav.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/sbf_navigation_blocks.hpp"
+#include "world/gnss/broadcast_lnav.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -10,11 +10,11 @@
 #include "firmware/receiver.hpp"
 #include "firmware/septentrio/command_line_reader.hpp"
 #include "firmware/septentrio/console.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/sbf_blocks.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/rtcm3.hpp"
-#include "skyloop/protocol/sbf_blocks.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -5,14 +5,14 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "base/geo/local_frame.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/messages/other_protocols.hpp"
 #include "firmware/messages/sbf_cartesian_messages.hpp"
 #include "firmware/state_tracker.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
 #include "sample_correlation.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

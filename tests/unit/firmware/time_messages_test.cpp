@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_time.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

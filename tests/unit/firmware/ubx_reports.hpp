@@ -9,8 +9,8 @@
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "receiver/protocol/ubx_fields.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/protocol/ubx_fields.hpp"
 
 namespace skyloop::firmware {
 

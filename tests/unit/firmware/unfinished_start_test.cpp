@@ -4,8 +4,8 @@
 #include "firmware/config/config_handler.hpp"
 #include "firmware/receiver.hpp"
 #include "firmware/state_tracker.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 #include "sample_epochs.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 namespace {

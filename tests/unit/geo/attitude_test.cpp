@@ -1,4 +1,4 @@
-#include "skyloop/geo/attitude.hpp"
+#include "base/geo/attitude.hpp"
 
 #include <gtest/gtest.h>
 

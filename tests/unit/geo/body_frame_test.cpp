@@ -1,9 +1,9 @@
 // Attitudes against the Earth as a whole.
-#include "skyloop/geo/body_frame.hpp"
+#include "base/geo/body_frame.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/geo/geodetic.hpp"
+#include "base/geo/geodetic.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "skyloop/geo/geoid.hpp"
+#include "base/geo/geoid.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
-#include "skyloop/geo/level_frame.hpp"
+#include "base/geo/level_frame.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,11 +1,11 @@
-#include "skyloop/geo/local_map.hpp"
+#include "base/geo/local_map.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

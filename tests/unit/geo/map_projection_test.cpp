@@ -1,4 +1,4 @@
-#include "skyloop/geo/map_projection.hpp"
+#include "base/geo/map_projection.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "skyloop/gnss/atmosphere.hpp"
+#include "world/gnss/atmosphere.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

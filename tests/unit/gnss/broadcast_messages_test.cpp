@@ -5,12 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "skyloop/gnss/broadcast_d1.hpp"
-#include "skyloop/gnss/broadcast_glonass.hpp"
-#include "skyloop/gnss/broadcast_inav.hpp"
-#include "skyloop/gnss/broadcast_lnav.hpp"
-#include "skyloop/gnss/nominal_constellation.hpp"
-#include "skyloop/gnss/orbit.hpp"
+#include "world/gnss/broadcast_d1.hpp"
+#include "world/gnss/broadcast_glonass.hpp"
+#include "world/gnss/broadcast_inav.hpp"
+#include "world/gnss/broadcast_lnav.hpp"
+#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop {
 namespace {

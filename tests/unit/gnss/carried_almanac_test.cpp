@@ -1,10 +1,10 @@
-#include "skyloop/gnss/carried_almanac.hpp"
+#include "world/gnss/carried_almanac.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/gnss/orbit.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/gnss/dop.hpp"
+#include "world/gnss/dop.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "skyloop/gnss/foreign_records.hpp"
+#include "world/gnss/foreign_records.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "skyloop/gnss/nominal_constellation.hpp"
-#include "skyloop/gnss/orbit.hpp"
+#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {
 namespace {

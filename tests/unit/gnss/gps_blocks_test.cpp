@@ -1,8 +1,8 @@
-#include "skyloop/gnss/gps_blocks.hpp"
+#include "world/gnss/gps_blocks.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 
 namespace skyloop::test {
 namespace {

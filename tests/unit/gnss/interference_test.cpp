@@ -1,4 +1,4 @@
-#include "skyloop/gnss/interference.hpp"
+#include "world/gnss/interference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/gnss/ionosphere_maps.hpp"
+#include "world/gnss/ionosphere_maps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
-#include "skyloop/gnss/navigation_data.hpp"
+#include "world/gnss/navigation_data.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <sstream>
 
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {
 namespace {

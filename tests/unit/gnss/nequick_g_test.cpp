@@ -1,4 +1,4 @@
-#include "skyloop/gnss/nequick_g.hpp"
+#include "world/gnss/nequick_g.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

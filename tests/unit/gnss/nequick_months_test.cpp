@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "skyloop/gnss/nequick_g.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/nequick_g.hpp"
 
 namespace skyloop {
 namespace {

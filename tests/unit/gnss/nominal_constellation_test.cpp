@@ -1,4 +1,4 @@
-#include "skyloop/gnss/nominal_constellation.hpp"
+#include "world/gnss/nominal_constellation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <numbers>
 #include <set>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/geo/local_frame.hpp"
+#include "base/time/utc_time.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {
 namespace {

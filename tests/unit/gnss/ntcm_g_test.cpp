@@ -1,8 +1,8 @@
-#include "skyloop/gnss/ntcm_g.hpp"
+#include "world/gnss/ntcm_g.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -1,8 +1,8 @@
-#include "skyloop/gnss/orbit.hpp"
+#include "world/gnss/orbit.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop::test {

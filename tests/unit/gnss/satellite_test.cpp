@@ -1,4 +1,4 @@
-#include "skyloop/gnss/satellite.hpp"
+#include "world/gnss/satellite.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/gnss/signal.hpp"
+#include "world/gnss/signal.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "skyloop/gnss/thin_shell.hpp"
+#include "world/gnss/thin_shell.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/gnss/troposphere.hpp"
+#include "world/gnss/troposphere.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/hid/cp2110.hpp"
+#include "wire/hid/cp2110.hpp"
 
 #include <gtest/gtest.h>
 

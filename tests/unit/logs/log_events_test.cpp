@@ -1,10 +1,10 @@
 // What goes wrong in made-up logs is found, to the epoch, and told as faults.
-#include "skyloop/logs/log_events.hpp"
+#include "receiver/logs/log_events.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Logs of every kind, from bytes made here by the published layouts.
-#include "skyloop/logs/receiver_log.hpp"
+#include "receiver/logs/receiver_log.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <limits>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/logs/dataflash.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/core/text_file.hpp"
+#include "base/time/utc_time.hpp"
+#include "receiver/logs/dataflash.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "skyloop/measurement/correlator_multipath.hpp"
+#include "receiver/measurement/correlator_multipath.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "measured_sky.hpp"
-#include "skyloop/measurement/scintillation.hpp"
+#include "receiver/measurement/scintillation.hpp"
 
 namespace skyloop {
 namespace {

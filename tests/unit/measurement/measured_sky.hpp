@@ -4,8 +4,8 @@
 #include <initializer_list>
 #include <optional>
 
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/measurement/measurement_engine.hpp"
+#include "receiver/measurement/measurement_engine.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::test {
 

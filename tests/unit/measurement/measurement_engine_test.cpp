@@ -1,4 +1,4 @@
-#include "skyloop/measurement/measurement_engine.hpp"
+#include "receiver/measurement/measurement_engine.hpp"
 
 #include <gtest/gtest.h>
 

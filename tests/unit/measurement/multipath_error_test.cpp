@@ -1,10 +1,10 @@
-#include "skyloop/measurement/multipath_error.hpp"
+#include "receiver/measurement/multipath_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "skyloop/measurement/tracking_jitter.hpp"
+#include "receiver/measurement/tracking_jitter.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "skyloop/measurement/receiver_clock.hpp"
+#include "receiver/measurement/receiver_clock.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

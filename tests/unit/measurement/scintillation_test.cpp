@@ -1,10 +1,10 @@
-#include "skyloop/measurement/scintillation.hpp"
+#include "receiver/measurement/scintillation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -1,12 +1,12 @@
-#include "skyloop/measurement/subframe_reception.hpp"
+#include "receiver/measurement/subframe_reception.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <set>
 
-#include "skyloop/gnss/broadcast_lnav.hpp"
 #include "support/four_systems.hpp"
+#include "world/gnss/broadcast_lnav.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,9 +1,9 @@
-#include "skyloop/measurement/tracking_jitter.hpp"
+#include "receiver/measurement/tracking_jitter.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // A line of JSON for an epoch.
-#include "skyloop/output/epoch_record.hpp"
+#include "run/output/epoch_record.hpp"
 
 #include <gtest/gtest.h>
 

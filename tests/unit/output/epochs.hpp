@@ -1,10 +1,10 @@
 /// Epochs of a receiver that drives north, as observers see them.
 #pragma once
 
+#include "base/geo/local_frame.hpp"
+#include "base/time/utc_time.hpp"
 #include "firmware/navigation_state.hpp"
-#include "skyloop/fault/run_observer.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "run/fault/run_observer.hpp"
 
 namespace skyloop::test {
 

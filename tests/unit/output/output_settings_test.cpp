@@ -1,10 +1,10 @@
 // What a user may type after --output, and what is said of all else.
-#include "skyloop/output/output_settings.hpp"
+#include "run/output/output_settings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

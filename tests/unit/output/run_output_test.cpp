@@ -1,5 +1,5 @@
 // From epochs to messages: which, in which order, when, and what a bad other end changes.
-#include "skyloop/output/run_output.hpp"
+#include "run/output/run_output.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/core/steady_clock.hpp"
 #include "epochs.hpp"
-#include "skyloop/base/steady_clock.hpp"
-#include "skyloop/protocol/mavlink_vehicle.hpp"
-#include "skyloop/protocol/msp.hpp"
+#include "receiver/protocol/mavlink_vehicle.hpp"
+#include "receiver/protocol/msp.hpp"
 
 namespace skyloop {
 namespace {

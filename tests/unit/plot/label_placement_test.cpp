@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/plot/sky_plot.hpp"
+#include "study/plot/sky_plot.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,11 +1,11 @@
 // The picture of a path.
-#include "skyloop/plot/path_plot.hpp"
+#include "study/plot/path_plot.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "skyloop/trajectory/geometric_paths.hpp"
+#include "motion/trajectory/geometric_paths.hpp"
 #include "unit/plot/well_formed.hpp"
 
 namespace skyloop {

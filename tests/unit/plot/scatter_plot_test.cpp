@@ -1,11 +1,11 @@
-#include "skyloop/plot/scatter_plot.hpp"
+#include "study/plot/scatter_plot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 #include "unit/plot/well_formed.hpp"
 
 namespace skyloop {

@@ -1,14 +1,14 @@
-#include "skyloop/plot/scene_plot.hpp"
+#include "study/plot/scene_plot.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/plot/city_run_plot.hpp"
-#include "skyloop/plot/coverage_plot.hpp"
-#include "skyloop/plot/sky_plot.hpp"
-#include "skyloop/scene/generated_city.hpp"
+#include "study/plot/city_run_plot.hpp"
+#include "study/plot/coverage_plot.hpp"
+#include "study/plot/sky_plot.hpp"
 #include "unit/plot/well_formed.hpp"
+#include "world/scene/generated_city.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/plot/sky_plot.hpp"
+#include "study/plot/sky_plot.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -6,8 +6,8 @@
 
 #include <limits>
 
-#include "skyloop/plot/svg_document.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
+#include "study/plot/svg_document.hpp"
 #include "unit/plot/well_formed.hpp"
 
 namespace skyloop {

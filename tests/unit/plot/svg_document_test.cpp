@@ -1,4 +1,4 @@
-#include "skyloop/plot/svg_document.hpp"
+#include "study/plot/svg_document.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "skyloop/plot/track_plot.hpp"
+#include "study/plot/track_plot.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "unit/plot/well_formed.hpp"
 
 namespace skyloop {

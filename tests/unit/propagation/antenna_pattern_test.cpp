@@ -1,4 +1,4 @@
-#include "skyloop/propagation/antenna_pattern.hpp"
+#include "world/propagation/antenna_pattern.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "skyloop/propagation/atmosphere_losses.hpp"
+#include "world/propagation/atmosphere_losses.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "modern_sky.hpp"
-#include "skyloop/propagation/gas_attenuation_p676.hpp"
+#include "world/propagation/gas_attenuation_p676.hpp"
 
 namespace skyloop {
 namespace {

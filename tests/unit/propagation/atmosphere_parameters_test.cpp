@@ -1,4 +1,4 @@
-#include "skyloop/propagation/atmosphere_parameters.hpp"
+#include "world/propagation/atmosphere_parameters.hpp"
 
 #include <gtest/gtest.h>
 

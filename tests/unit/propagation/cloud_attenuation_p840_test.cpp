@@ -1,9 +1,9 @@
-#include "skyloop/propagation/cloud_attenuation_p840.hpp"
+#include "world/propagation/cloud_attenuation_p840.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,9 +1,9 @@
-#include "skyloop/propagation/free_space.hpp"
+#include "world/propagation/free_space.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

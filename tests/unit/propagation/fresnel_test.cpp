@@ -1,4 +1,4 @@
-#include "skyloop/propagation/fresnel.hpp"
+#include "world/propagation/fresnel.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/propagation/gas_attenuation_p676.hpp"
+#include "world/propagation/gas_attenuation_p676.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <array>
 #include <string>
 
-#include "../../../src/propagation/gas_attenuation_p676_table.hpp"
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/propagation/detail/gas_attenuation_p676_table.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/propagation/ionosphere_delay.hpp"
+#include "world/propagation/ionosphere_delay.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <tuple>
 
 #include "modern_sky.hpp"
-#include "skyloop/gnss/atmosphere.hpp"
-#include "skyloop/gnss/nequick_g.hpp"
+#include "world/gnss/atmosphere.hpp"
+#include "world/gnss/nequick_g.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,10 +1,10 @@
-#include "skyloop/propagation/knife_edge.hpp"
+#include "world/propagation/knife_edge.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/gnss/constants.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

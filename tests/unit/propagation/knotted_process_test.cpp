@@ -1,4 +1,4 @@
-#include "skyloop/propagation/knotted_process.hpp"
+#include "world/propagation/knotted_process.hpp"
 
 #include <gtest/gtest.h>
 

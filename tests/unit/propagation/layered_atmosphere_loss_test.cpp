@@ -1,4 +1,4 @@
-#include "skyloop/propagation/layered_atmosphere_loss.hpp"
+#include "world/propagation/layered_atmosphere_loss.hpp"
 
 #include <gtest/gtest.h>
 

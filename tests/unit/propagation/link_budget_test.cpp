@@ -1,10 +1,10 @@
-#include "skyloop/propagation/link_budget.hpp"
+#include "world/propagation/link_budget.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/propagation/layered_atmosphere_loss.hpp"
 #include "support/oracle_table.hpp"
 #include "unit/propagation/one_satellite.hpp"
+#include "world/propagation/layered_atmosphere_loss.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,10 +1,10 @@
-#include "skyloop/propagation/modern_effects.hpp"
+#include "world/propagation/modern_effects.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "modern_sky.hpp"
-#include "skyloop/gnss/atmosphere.hpp"
+#include "world/gnss/atmosphere.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/propagation/modern_link_budget.hpp"
+#include "world/propagation/modern_link_budget.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <string>
 
 #include "modern_sky.hpp"
-#include "skyloop/propagation/modern_effects.hpp"
 #include "support/oracle_table.hpp"
+#include "world/propagation/modern_effects.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <vector>
 
-#include "skyloop/flow/arrivals.hpp"
-#include "skyloop/flow/sky_view.hpp"
-#include "skyloop/flow/truth_state.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/propagation/effect.hpp"
-#include "skyloop/propagation/free_space.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
+#include "world/flow/arrivals.hpp"
+#include "world/flow/sky_view.hpp"
+#include "world/flow/truth_state.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/propagation/effect.hpp"
+#include "world/propagation/free_space.hpp"
 
 namespace skyloop::test {
 

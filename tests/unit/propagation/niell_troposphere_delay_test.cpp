@@ -1,4 +1,4 @@
-#include "skyloop/propagation/niell_troposphere_delay.hpp"
+#include "world/propagation/niell_troposphere_delay.hpp"
 
 #include <gtest/gtest.h>
 

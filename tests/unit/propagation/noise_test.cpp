@@ -1,4 +1,4 @@
-#include "skyloop/propagation/noise.hpp"
+#include "world/propagation/noise.hpp"
 
 #include <gtest/gtest.h>
 

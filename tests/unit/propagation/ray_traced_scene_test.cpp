@@ -1,13 +1,13 @@
-#include "skyloop/propagation/ray_traced_scene.hpp"
+#include "world/propagation/ray_traced_scene.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "base/geo/local_frame.hpp"
 #include "modern_sky.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/propagation/knife_edge.hpp"
-#include "skyloop/propagation/scene_edges.hpp"
+#include "world/propagation/knife_edge.hpp"
+#include "world/propagation/scene_edges.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/propagation/reference_atmosphere_p835.hpp"
+#include "world/propagation/reference_atmosphere_p835.hpp"
 
 #include <gtest/gtest.h>
 

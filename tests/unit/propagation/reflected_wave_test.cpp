@@ -1,4 +1,4 @@
-#include "skyloop/propagation/reflected_wave.hpp"
+#include "world/propagation/reflected_wave.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/propagation/fresnel.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/propagation/fresnel.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/propagation/refraction_delay.hpp"
+#include "world/propagation/refraction_delay.hpp"
 
 #include <gtest/gtest.h>
 

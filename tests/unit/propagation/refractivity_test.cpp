@@ -1,4 +1,4 @@
-#include "skyloop/propagation/refractivity.hpp"
+#include "world/propagation/refractivity.hpp"
 
 #include <gtest/gtest.h>
 

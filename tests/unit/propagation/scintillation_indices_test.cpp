@@ -1,11 +1,11 @@
-#include "skyloop/propagation/scintillation_indices.hpp"
+#include "world/propagation/scintillation_indices.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "modern_sky.hpp"
-#include "skyloop/gnss/nequick_tables.hpp"
+#include "world/gnss/nequick_tables.hpp"
 
 namespace skyloop {
 namespace {

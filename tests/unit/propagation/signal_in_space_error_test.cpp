@@ -1,4 +1,4 @@
-#include "skyloop/propagation/signal_in_space_error.hpp"
+#include "world/propagation/signal_in_space_error.hpp"
 
 #include <gtest/gtest.h>
 

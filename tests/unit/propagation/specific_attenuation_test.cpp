@@ -1,11 +1,11 @@
-#include "skyloop/propagation/specific_attenuation.hpp"
+#include "world/propagation/specific_attenuation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

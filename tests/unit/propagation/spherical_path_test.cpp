@@ -1,10 +1,10 @@
-#include "skyloop/propagation/spherical_path.hpp"
+#include "world/propagation/spherical_path.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/propagation/free_space.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/propagation/free_space.hpp"
 
 namespace skyloop {
 namespace {

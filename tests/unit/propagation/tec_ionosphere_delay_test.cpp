@@ -1,10 +1,10 @@
-#include "skyloop/propagation/tec_ionosphere_delay.hpp"
+#include "world/propagation/tec_ionosphere_delay.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/gnss/atmosphere.hpp"
 #include "support/oracle_table.hpp"
 #include "unit/propagation/one_satellite.hpp"
+#include "world/gnss/atmosphere.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "skyloop/propagation/told_obstacles.hpp"
+#include "world/propagation/told_obstacles.hpp"
 
 namespace {
 

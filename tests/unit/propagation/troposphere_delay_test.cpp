@@ -1,4 +1,4 @@
-#include "skyloop/propagation/troposphere_delay.hpp"
+#include "world/propagation/troposphere_delay.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/propagation/whole_path_loss.hpp"
+#include "world/propagation/whole_path_loss.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,18 +1,18 @@
-#include "skyloop/protocol/decoded_message.hpp"
+#include "receiver/protocol/decoded_message.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "skyloop/protocol/mavlink.hpp"
-#include "skyloop/protocol/message_listing.hpp"
-#include "skyloop/protocol/msp.hpp"
-#include "skyloop/protocol/sbf_blocks.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_names.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/mavlink.hpp"
+#include "receiver/protocol/message_listing.hpp"
+#include "receiver/protocol/msp.hpp"
+#include "receiver/protocol/sbf_blocks.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/protocol/mavlink_modes.hpp"
+#include "receiver/protocol/mavlink_modes.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "skyloop/protocol/mavlink.hpp"
+#include "receiver/protocol/mavlink.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "skyloop/protocol/mavlink_vehicle.hpp"
+#include "receiver/protocol/mavlink_vehicle.hpp"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 #include <string>
 
-#include "skyloop/protocol/field_lister.hpp"
+#include "receiver/protocol/field_lister.hpp"
 
 namespace skyloop {
 namespace {

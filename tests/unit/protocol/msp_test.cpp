@@ -1,4 +1,4 @@
-#include "skyloop/protocol/msp.hpp"
+#include "receiver/protocol/msp.hpp"
 
 #include <gtest/gtest.h>
 

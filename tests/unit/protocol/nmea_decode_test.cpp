@@ -1,4 +1,4 @@
-#include "skyloop/protocol/nmea_decode.hpp"
+#include "receiver/protocol/nmea_decode.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/base/text_file.hpp"
+#include "base/core/random.hpp"
+#include "base/core/text_file.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

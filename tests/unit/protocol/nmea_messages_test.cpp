@@ -1,4 +1,4 @@
-#include "skyloop/protocol/nmea_messages.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/protocol/nmea_sentence.hpp"
+#include "base/core/random.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
 
 namespace skyloop {
 namespace {

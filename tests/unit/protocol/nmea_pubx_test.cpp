@@ -1,9 +1,9 @@
-#include "skyloop/protocol/nmea_pubx.hpp"
+#include "receiver/protocol/nmea_pubx.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/protocol/nmea_satellites.hpp"
+#include "receiver/protocol/nmea_satellites.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,10 +1,10 @@
-#include "skyloop/protocol/nmea_supplements.hpp"
+#include "receiver/protocol/nmea_supplements.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/protocol/nmea_decode.hpp"
+#include "base/core/random.hpp"
+#include "receiver/protocol/nmea_decode.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,11 +5,11 @@
 #include <fstream>
 #include <iterator>
 
-#include "skyloop/protocol/mavlink.hpp"
-#include "skyloop/protocol/msp.hpp"
-#include "skyloop/protocol/sbf_blocks.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
+#include "receiver/protocol/mavlink.hpp"
+#include "receiver/protocol/msp.hpp"
+#include "receiver/protocol/sbf_blocks.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

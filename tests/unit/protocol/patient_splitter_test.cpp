@@ -1,9 +1,9 @@
 // Payloads and false beginnings, told apart by the time.
-#include "skyloop/protocol/patient_splitter.hpp"
+#include "receiver/protocol/patient_splitter.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/protocol/ubx_frame.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop {
 namespace {

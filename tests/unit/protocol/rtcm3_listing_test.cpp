@@ -3,8 +3,8 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/base/bit_field.hpp"
-#include "skyloop/protocol/message_listing.hpp"
+#include "base/core/bit_field.hpp"
+#include "receiver/protocol/message_listing.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,12 +1,12 @@
-#include "skyloop/protocol/rtcm3_msm.hpp"
+#include "receiver/protocol/rtcm3_msm.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/base/bit_field.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/protocol/rtcm3.hpp"
+#include "base/core/bit_field.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

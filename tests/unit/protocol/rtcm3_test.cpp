@@ -1,13 +1,13 @@
-#include "skyloop/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <map>
 
-#include "skyloop/base/bit_field.hpp"
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
+#include "base/core/bit_field.hpp"
+#include "base/core/text_file.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

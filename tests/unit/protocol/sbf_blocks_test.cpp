@@ -1,9 +1,9 @@
 // The blocks of measurements, navigation messages and setup.
 #include <gtest/gtest.h>
 
-#include "skyloop/protocol/field_lister.hpp"
-#include "skyloop/protocol/known_sbf.hpp"
-#include "skyloop/protocol/message_listing.hpp"
+#include "receiver/protocol/field_lister.hpp"
+#include "receiver/protocol/known_sbf.hpp"
+#include "receiver/protocol/message_listing.hpp"
 
 namespace skyloop {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <set>
 
-#include "skyloop/protocol/sbf_blocks.hpp"
-#include "skyloop/protocol/sbf_status_blocks.hpp"
+#include "receiver/protocol/sbf_blocks.hpp"
+#include "receiver/protocol/sbf_status_blocks.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/protocol/stream_splitter.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,11 @@
 #include <random>
 #include <string>
 
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_mon.hpp"
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_satellites.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
+#include "receiver/protocol/ubx_time.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "skyloop/protocol/ubx_cfg_hardware.hpp"
-#include "skyloop/protocol/ubx_cfg_navigation.hpp"
-#include "skyloop/protocol/ubx_cfg_output.hpp"
+#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_navigation.hpp"
+#include "receiver/protocol/ubx_cfg_output.hpp"
 
 namespace skyloop {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "skyloop/protocol/decoded_message.hpp"
-#include "skyloop/protocol/message_listing.hpp"
-#include "skyloop/protocol/ubx_names.hpp"
+#include "receiver/protocol/decoded_message.hpp"
+#include "receiver/protocol/message_listing.hpp"
+#include "receiver/protocol/ubx_names.hpp"
 #include "support/ubx_message_types.hpp"
 
 namespace skyloop {

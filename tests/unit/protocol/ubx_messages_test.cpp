@@ -3,9 +3,9 @@
 #include <cctype>
 #include <map>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/protocol/stream_splitter.hpp"
-#include "skyloop/protocol/ubx_names.hpp"
+#include "base/core/text_file.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_names.hpp"
 #include "support/oracle_table.hpp"
 #include "support/ubx_message_types.hpp"
 

@@ -1,4 +1,4 @@
-#include "skyloop/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_names.hpp"
 
 #include <gtest/gtest.h>
 

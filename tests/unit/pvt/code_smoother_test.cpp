@@ -1,11 +1,11 @@
-#include "skyloop/pvt/code_smoother.hpp"
+#include "receiver/pvt/code_smoother.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "base/core/random.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,15 +1,15 @@
-#include "skyloop/pvt/corrections.hpp"
+#include "receiver/pvt/corrections.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/gnss/signal.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/flat_geoid.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop {
 namespace {

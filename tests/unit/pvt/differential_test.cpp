@@ -2,7 +2,7 @@
 // the folder's own, so this is seen in fixes.
 #include <gtest/gtest.h>
 
-#include "skyloop/pvt/navigation_engine.hpp"
+#include "receiver/pvt/navigation_engine.hpp"
 #include "support/flat_geoid.hpp"
 #include "synthetic_sky.hpp"
 

@@ -1,4 +1,4 @@
-#include "skyloop/pvt/expected_error.hpp"
+#include "receiver/pvt/expected_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "skyloop/pvt/integrity.hpp"
+#include "receiver/pvt/integrity.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 #include "synthetic_sky.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "skyloop/pvt/navigation_engine.hpp"
+#include "receiver/pvt/navigation_engine.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/core/random.hpp"
 #include "plain_navigation.hpp"
-#include "skyloop/base/random.hpp"
-#include "skyloop/pvt/corrections.hpp"
+#include "receiver/pvt/corrections.hpp"
 #include "support/flat_geoid.hpp"
 
 namespace skyloop {

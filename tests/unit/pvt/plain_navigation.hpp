@@ -1,7 +1,7 @@
 /// A navigation engine over the synthetic sky, for tests.
 #pragma once
 
-#include "skyloop/pvt/navigation_engine.hpp"
+#include "receiver/pvt/navigation_engine.hpp"
 #include "synthetic_sky.hpp"
 
 namespace skyloop::test {

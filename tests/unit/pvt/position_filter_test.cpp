@@ -1,11 +1,11 @@
-#include "skyloop/pvt/position_filter.hpp"
+#include "receiver/pvt/position_filter.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/base/gauss_markov.hpp"
-#include "skyloop/base/random.hpp"
+#include "base/core/gauss_markov.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,11 +1,11 @@
-#include "skyloop/pvt/single_point.hpp"
+#include "receiver/pvt/single_point.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 #include "synthetic_sky.hpp"
 
 namespace skyloop {

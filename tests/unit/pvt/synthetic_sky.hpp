@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "skyloop/flow/observations.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/gnss/dop.hpp"
-#include "skyloop/gnss/navigation_source.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/gnss/signal.hpp"
+#include "base/geo/local_frame.hpp"
+#include "world/flow/observations.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/gnss/dop.hpp"
+#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop::test {
 

@@ -1,4 +1,4 @@
-#include "skyloop/pvt/transmitter.hpp"
+#include "receiver/pvt/transmitter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,16 +1,16 @@
-#include "skyloop/rinex/almanac_file.hpp"
+#include "world/rinex/almanac_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/core/text_file.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/rinex/navigation_file.hpp"
 
 namespace skyloop::test {
 namespace {

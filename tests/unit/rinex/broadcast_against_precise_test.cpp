@@ -6,12 +6,12 @@
 #include <map>
 #include <set>
 
-#include "skyloop/gnss/foreign_records.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/rinex/precise_orbit_file.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/foreign_records.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/rinex/navigation_file.hpp"
+#include "world/rinex/precise_orbit_file.hpp"
 
 namespace skyloop::test {
 namespace {

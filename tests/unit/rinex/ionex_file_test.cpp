@@ -1,12 +1,12 @@
-#include "skyloop/rinex/ionex_file.hpp"
+#include "world/rinex/ionex_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "skyloop/gnss/constants.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop {
 namespace {

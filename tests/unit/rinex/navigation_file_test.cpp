@@ -1,4 +1,4 @@
-#include "skyloop/rinex/navigation_file.hpp"
+#include "world/rinex/navigation_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <clocale>
 #include <filesystem>
 
+#include "base/time/utc_time.hpp"
 #include "navigation_text.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/time/utc_time.hpp"
 #include "navigation_text.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "world/rinex/navigation_file.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/rinex/navigation_writer.hpp"
+#include "world/rinex/navigation_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
+#include "world/rinex/navigation_file.hpp"
 
 namespace skyloop::test {
 namespace {

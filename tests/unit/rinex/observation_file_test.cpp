@@ -1,4 +1,4 @@
-#include "skyloop/rinex/observation_file.hpp"
+#include "world/rinex/observation_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "skyloop/rinex/observation_reader.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
+#include "world/rinex/observation_reader.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,12 +1,12 @@
-#include "skyloop/rinex/observation_reader.hpp"
+#include "world/rinex/observation_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
+#include "base/time/utc_time.hpp"
 #include "observation_text.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,13 +1,13 @@
-#include "skyloop/rinex/precise_orbit_file.hpp"
+#include "world/rinex/precise_orbit_file.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/gnss/nominal_constellation.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -6,11 +6,11 @@
 #include <map>
 #include <set>
 
-#include "skyloop/gnss/foreign_records.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/foreign_records.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/rinex/navigation_file.hpp"
 
 namespace skyloop::test {
 namespace {

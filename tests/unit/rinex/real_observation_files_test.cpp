@@ -3,10 +3,10 @@
 #include <map>
 #include <set>
 
-#include "skyloop/gnss/gps_blocks.hpp"
-#include "skyloop/rinex/observation_reader.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/gps_blocks.hpp"
+#include "world/rinex/observation_reader.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -8,12 +8,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/rinex/navigation_writer.hpp"
-#include "skyloop/rinex/observation_file.hpp"
-#include "skyloop/rinex/observation_reader.hpp"
+#include "base/core/text_file.hpp"
 #include "support/oracle_table.hpp"
+#include "world/rinex/navigation_file.hpp"
+#include "world/rinex/navigation_writer.hpp"
+#include "world/rinex/observation_file.hpp"
+#include "world/rinex/observation_reader.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "skyloop/scenario/device_file.hpp"
+#include "run/scenario/device_file.hpp"
 
 namespace skyloop {
 namespace {

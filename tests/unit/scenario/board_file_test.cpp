@@ -1,4 +1,4 @@
-#include "skyloop/scenario/board_file.hpp"
+#include "run/scenario/board_file.hpp"
 #include "support/oracle_table.hpp"
 
 #include <gmock/gmock.h>

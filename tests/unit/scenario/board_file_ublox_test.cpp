@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "firmware/config/config_handler.hpp"
-#include "skyloop/protocol/ubx_cfg.hpp"
-#include "skyloop/protocol/ubx_cfg_values.hpp"
-#include "skyloop/scenario/board_file.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "run/scenario/board_file.hpp"
 
 namespace skyloop {
 namespace {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "run/scenario/key_catalogue.hpp"
 #include "scenario_text.hpp"
-#include "skyloop/scenario/key_catalogue.hpp"
 
 namespace skyloop {
 namespace {
@@ -305,7 +305,7 @@ TEST(KeyCatalogue, EveryKeyHasItsWordsAndEveryWordItsKey) {
     for (const KeyTable& table : scenario_key_tables())
         for (const KeyEntry& key : table.keys)
             EXPECT_FALSE(key.meaning.empty())
-                << "src/scenario/key_meanings*.cpp have no words for " << table.path << "." << key.name;
+                << "src/run/scenario/key_meanings*.cpp have no words for " << table.path << "." << key.name;
     EXPECT_THAT(words_without_key(), IsEmpty());
 }
 

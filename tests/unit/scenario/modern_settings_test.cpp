@@ -1,12 +1,12 @@
 // The modern profile's settings: presets, what `errors` does, and the names of models.
-#include "skyloop/scenario/modern_settings.hpp"
+#include "run/scenario/modern_settings.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "skyloop/scenario/scenario.hpp"
+#include "run/scenario/scenario.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "run/scenario/scenario_changes.hpp"
+#include "run/scenario/scenario_file.hpp"
 #include "scenario_text.hpp"
-#include "skyloop/scenario/scenario_changes.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
 
 namespace skyloop {
 namespace {

@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
+#include "run/scenario/key_catalogue.hpp"
 #include "scenario_text.hpp"
-#include "skyloop/scenario/key_catalogue.hpp"
 
 namespace skyloop {
 namespace {

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "run/verdict/expectation_sentence.hpp"
 #include "scenario_text.hpp"
-#include "skyloop/verdict/expectation_sentence.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Every key lands in its field, whatever the order of the keys.
-#include "skyloop/scenario/scenario_file.hpp"
+#include "run/scenario/scenario_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/time/utc_time.hpp"
 #include "scenario_text.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "skyloop/scenario/scenario_file.hpp"
+#include "run/scenario/scenario_file.hpp"
 
 namespace skyloop::test {
 

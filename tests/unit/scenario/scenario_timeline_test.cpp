@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/time/utc_time.hpp"
+#include "run/scenario/scenario_file.hpp"
+#include "run/scenario/timeline_check.hpp"
 #include "scenario_text.hpp"
-#include "skyloop/scenario/scenario_file.hpp"
-#include "skyloop/scenario/timeline_check.hpp"
-#include "skyloop/time/utc_time.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/geo/local_frame.hpp"
 #include "scenario_text.hpp"
-#include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

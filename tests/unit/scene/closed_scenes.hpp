@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "skyloop/scene/path_finder.hpp"
+#include "world/scene/path_finder.hpp"
 
 namespace skyloop::test {
 

@@ -1,12 +1,12 @@
-#include "skyloop/scene/exhaustive_paths.hpp"
+#include "world/scene/exhaustive_paths.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "skyloop/scene/generated_city.hpp"
 #include "support/random_sky.hpp"
+#include "world/scene/generated_city.hpp"
 
 namespace skyloop::test {
 namespace {

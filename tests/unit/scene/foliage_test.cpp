@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/scene/urban_scene.hpp"
+#include "base/core/random.hpp"
+#include "world/scene/urban_scene.hpp"
 
 namespace skyloop {
 namespace {

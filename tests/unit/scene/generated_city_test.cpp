@@ -1,4 +1,4 @@
-#include "skyloop/scene/generated_city.hpp"
+#include "world/scene/generated_city.hpp"
 
 #include <gtest/gtest.h>
 

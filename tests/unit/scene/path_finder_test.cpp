@@ -1,4 +1,4 @@
-#include "skyloop/scene/path_finder.hpp"
+#include "world/scene/path_finder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

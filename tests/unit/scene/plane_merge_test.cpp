@@ -4,8 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/scene/urban_scene.hpp"
+#include "base/core/random.hpp"
+#include "world/scene/urban_scene.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,12 +1,12 @@
-#include "skyloop/scene/ring_pieces.hpp"
+#include "world/scene/ring_pieces.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "skyloop/base/random.hpp"
-#include "skyloop/scene/urban_scene.hpp"
+#include "base/core/random.hpp"
+#include "world/scene/urban_scene.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/scene/scene_path.hpp"
+#include "world/scene/scene_path.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "skyloop/scene/stand_on_terrain.hpp"
+#include "world/scene/stand_on_terrain.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/scene/urban_scene.hpp"
+#include "world/scene/urban_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <thread>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,12 +1,12 @@
-#include "skyloop/sky/light_time.hpp"
+#include "world/sky/light_time.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/gnss/constants.hpp"
+#include "base/geo/local_frame.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/sky/observe_sky.hpp"
+#include "world/sky/observe_sky.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,16 +8,16 @@
 #include <memory>
 #include <sstream>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/gnss/nominal_constellation.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/gnss/signal.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
-#include "skyloop/sky/light_time.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/geo/local_frame.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/gnss/signal.hpp"
+#include "world/rinex/navigation_file.hpp"
+#include "world/sky/light_time.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,14 +1,14 @@
-#include "skyloop/sky/record_changes.hpp"
+#include "world/sky/record_changes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/geo/geodetic.hpp"
-#include "skyloop/gnss/constants.hpp"
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/sky/observe_sky.hpp"
+#include "base/geo/geodetic.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/sky/observe_sky.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,15 +1,15 @@
-#include "skyloop/sky/satellite_tracks.hpp"
+#include "world/sky/satellite_tracks.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
 
-#include "skyloop/gnss/navigation_data.hpp"
-#include "skyloop/gnss/nominal_constellation.hpp"
-#include "skyloop/gnss/orbit.hpp"
-#include "skyloop/rinex/navigation_file.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/navigation_data.hpp"
+#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/rinex/navigation_file.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,8 +1,8 @@
-#include "skyloop/time/gps_time.hpp"
+#include "base/time/gps_time.hpp"
 
 #include <gtest/gtest.h>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

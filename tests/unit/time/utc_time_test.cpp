@@ -1,11 +1,11 @@
-#include "skyloop/time/utc_time.hpp"
+#include "base/time/utc_time.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

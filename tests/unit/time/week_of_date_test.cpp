@@ -1,4 +1,4 @@
-#include "skyloop/time/week_of_date.hpp"
+#include "base/time/week_of_date.hpp"
 
 #include <gtest/gtest.h>
 

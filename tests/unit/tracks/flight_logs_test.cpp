@@ -10,11 +10,11 @@
 #include <random>
 #include <sstream>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/protocol/mavlink_vehicle.hpp"
-#include "skyloop/time/utc_time.hpp"
-#include "skyloop/tracks/read_track.hpp"
+#include "base/core/text_file.hpp"
+#include "base/geo/local_frame.hpp"
+#include "base/time/utc_time.hpp"
+#include "motion/tracks/read_track.hpp"
+#include "receiver/protocol/mavlink_vehicle.hpp"
 #include "support/flat_geoid.hpp"
 #include "support/oracle_table.hpp"
 

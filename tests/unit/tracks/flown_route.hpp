@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "skyloop/trajectory/route.hpp"
+#include "motion/trajectory/route.hpp"
 
 namespace skyloop::test {
 

@@ -1,7 +1,7 @@
 // GPX 1.0 and 1.1, as recorders write it and as they should not.
 #include <gmock/gmock.h>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 #include "track_reading.hpp"
 
 namespace skyloop {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "flown_route.hpp"
-#include "skyloop/trajectory/route.hpp"
+#include "motion/trajectory/route.hpp"
 #include "track_reading.hpp"
 
 namespace skyloop {

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 #include "track_reading.hpp"
 
 namespace skyloop {

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "base/core/text_file.hpp"
+#include "base/geo/local_frame.hpp"
 #include "stored_zip.hpp"
 #include "track_reading.hpp"
 

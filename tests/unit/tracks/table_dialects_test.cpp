@@ -1,8 +1,8 @@
 // Tables of other programs: each is recognised, and its units, axes, datum and clock are taken as its maker says.
 #include <gmock/gmock.h>
 
-#include "skyloop/base/text_file.hpp"
-#include "skyloop/geo/local_frame.hpp"
+#include "base/core/text_file.hpp"
+#include "base/geo/local_frame.hpp"
 #include "support/oracle_table.hpp"
 #include "track_reading.hpp"
 

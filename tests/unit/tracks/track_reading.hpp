@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "skyloop/time/utc_time.hpp"
-#include "skyloop/tracks/read_track.hpp"
+#include "base/time/utc_time.hpp"
+#include "motion/tracks/read_track.hpp"
 #include "support/flat_geoid.hpp"
 
 namespace skyloop::test {

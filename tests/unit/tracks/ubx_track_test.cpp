@@ -1,8 +1,8 @@
 // Logs of UBX as tracks: what gives their epochs a time.
 #include <gmock/gmock.h>
 
-#include "skyloop/protocol/ubx_nav.hpp"
-#include "skyloop/protocol/ubx_time.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
+#include "receiver/protocol/ubx_time.hpp"
 #include "track_reading.hpp"
 
 namespace skyloop {

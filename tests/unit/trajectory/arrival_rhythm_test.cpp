@@ -1,4 +1,4 @@
-#include "skyloop/trajectory/arrival_rhythm.hpp"
+#include "motion/trajectory/arrival_rhythm.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Generated paths of every kind keep the laws of paths, their own formulas and their seeds.
-#include "skyloop/trajectory/generated_path.hpp"
+#include "motion/trajectory/generated_path.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

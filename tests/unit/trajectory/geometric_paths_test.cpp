@@ -1,10 +1,10 @@
-#include "skyloop/trajectory/geometric_paths.hpp"
+#include "motion/trajectory/geometric_paths.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

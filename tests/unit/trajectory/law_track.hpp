@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/trajectory/track.hpp"
+#include "base/geo/local_frame.hpp"
+#include "motion/trajectory/track.hpp"
 
 namespace skyloop {
 

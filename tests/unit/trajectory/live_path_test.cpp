@@ -1,4 +1,4 @@
-#include "skyloop/trajectory/live_path.hpp"
+#include "motion/trajectory/live_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "skyloop/geo/local_frame.hpp"
+#include "base/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/geo/body_frame.hpp"
 #include "law_track.hpp"
-#include "skyloop/geo/body_frame.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
+#include "motion/trajectory/recorded_path.hpp"
 
 namespace skyloop {
 namespace {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "skyloop/trajectory/local_shape.hpp"
+#include "motion/trajectory/local_shape.hpp"
 
 namespace skyloop::test {
 

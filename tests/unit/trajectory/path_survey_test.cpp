@@ -1,5 +1,5 @@
 // What a survey finds of paths that are known by formula.
-#include "skyloop/trajectory/path_survey.hpp"
+#include "motion/trajectory/path_survey.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "law_track.hpp"
-#include "skyloop/trajectory/geometric_paths.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
-#include "skyloop/trajectory/track_csv.hpp"
+#include "motion/trajectory/geometric_paths.hpp"
+#include "motion/trajectory/recorded_path.hpp"
+#include "motion/trajectory/track_csv.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Curves by their length: headings are their directions, curvatures the change of those.
-#include "skyloop/trajectory/planar_curve.hpp"
+#include "motion/trajectory/planar_curve.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // How a run plays a recorded path: each option is a law that holds at every instant.
-#include "skyloop/trajectory/playback.hpp"
+#include "motion/trajectory/playback.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "base/geo/body_frame.hpp"
 #include "law_track.hpp"
-#include "skyloop/geo/body_frame.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // The curve through a track: it keeps the rows, its velocity is its slope, and nothing jumps.
-#include "skyloop/trajectory/recorded_path.hpp"
+#include "motion/trajectory/recorded_path.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

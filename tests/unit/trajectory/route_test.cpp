@@ -1,5 +1,5 @@
 // Places without times, flown.
-#include "skyloop/trajectory/route.hpp"
+#include "motion/trajectory/route.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <chrono>
 #include <random>
 
+#include "base/geo/local_frame.hpp"
 #include "path_laws.hpp"
-#include "skyloop/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,16 +1,16 @@
 // Shapes on the Earth: places are met, velocities are slopes, attitudes follow from the motion.
-#include "skyloop/trajectory/shaped_path.hpp"
+#include "motion/trajectory/shaped_path.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <optional>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/trajectory/closed_paths.hpp"
-#include "skyloop/trajectory/flight_profiles.hpp"
-#include "skyloop/trajectory/generated_path.hpp"
-#include "skyloop/trajectory/waypoint_plan.hpp"
+#include "base/geo/local_frame.hpp"
+#include "motion/trajectory/closed_paths.hpp"
+#include "motion/trajectory/flight_profiles.hpp"
+#include "motion/trajectory/generated_path.hpp"
+#include "motion/trajectory/waypoint_plan.hpp"
 
 namespace skyloop {
 namespace {

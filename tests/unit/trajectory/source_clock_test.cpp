@@ -1,4 +1,4 @@
-#include "skyloop/trajectory/source_clock.hpp"
+#include "motion/trajectory/source_clock.hpp"
 
 #include <gtest/gtest.h>
 

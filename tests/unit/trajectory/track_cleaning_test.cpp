@@ -8,7 +8,7 @@
 #include <random>
 
 #include "law_track.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
+#include "motion/trajectory/recorded_path.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,12 +1,12 @@
 // Tables of rows: every column that means something, and every table that is none.
-#include "skyloop/trajectory/track_csv.hpp"
+#include "motion/trajectory/track_csv.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/time/utc_time.hpp"
+#include "base/geo/local_frame.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/flat_geoid.hpp"
 
 namespace skyloop {

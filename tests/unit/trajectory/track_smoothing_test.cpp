@@ -1,5 +1,5 @@
 // The smoother takes noise out of rows and leaves alone what is motion.
-#include "skyloop/trajectory/track_smoothing.hpp"
+#include "motion/trajectory/track_smoothing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "law_track.hpp"
-#include "skyloop/trajectory/recorded_path.hpp"
+#include "motion/trajectory/recorded_path.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Ways through waypoints: they keep the vehicle's limits, pass where they should, and say what does not fit.
-#include "skyloop/trajectory/waypoint_plan.hpp"
+#include "motion/trajectory/waypoint_plan.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "skyloop/transport/cdc_acm_device.hpp"
+#include "wire/transport/cdc_acm_device.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Octets are those of RFC 854 and RFC 2217, section 2 and 3.
-#include "skyloop/transport/com_port_server.hpp"
+#include "wire/transport/com_port_server.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/transport/file.hpp"
+#include "wire/transport/file.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

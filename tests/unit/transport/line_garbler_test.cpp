@@ -1,10 +1,10 @@
-#include "skyloop/transport/line_garbler.hpp"
+#include "wire/transport/line_garbler.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "skyloop/base/random.hpp"
+#include "base/core/random.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Whole messages, whatever the other ends do.
-#include "skyloop/transport/message_sink.hpp"
+#include "wire/transport/message_sink.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "skyloop/transport/file.hpp"
-#include "skyloop/transport/tcp_client.hpp"
 #include "tcp_peer.hpp"
 #include "temporary_folder.hpp"
+#include "wire/transport/file.hpp"
+#include "wire/transport/tcp_client.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,12 +1,12 @@
-#include "skyloop/transport/open_transport.hpp"
+#include "wire/transport/open_transport.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "skyloop/transport/memory.hpp"
 #include "temporary_folder.hpp"
+#include "wire/transport/memory.hpp"
 
 namespace skyloop {
 namespace {

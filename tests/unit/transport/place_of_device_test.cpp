@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "skyloop/transport/serial.hpp"
 #include "temporary_folder.hpp"
+#include "wire/transport/serial.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "skyloop/transport/pty.hpp"
+#include "wire/transport/pty.hpp"
 
 #include <asm/termbits.h>
 #include <fcntl.h>

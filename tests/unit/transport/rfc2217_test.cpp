@@ -1,4 +1,4 @@
-#include "skyloop/transport/rfc2217.hpp"
+#include "wire/transport/rfc2217.hpp"
 
 #include <gmock/gmock.h>
 

@@ -20,9 +20,9 @@
 #include <memory>
 #include <string>
 
-#include "skyloop/transport/file_descriptor.hpp"
-#include "skyloop/transport/serial.hpp"
 #include "temporary_folder.hpp"
+#include "wire/transport/file_descriptor.hpp"
+#include "wire/transport/serial.hpp"
 
 namespace skyloop::test {
 

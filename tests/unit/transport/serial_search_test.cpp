@@ -1,4 +1,4 @@
-#include "skyloop/transport/serial_search.hpp"
+#include "wire/transport/serial_search.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

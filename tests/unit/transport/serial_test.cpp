@@ -1,4 +1,4 @@
-#include "skyloop/transport/serial.hpp"
+#include "wire/transport/serial.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

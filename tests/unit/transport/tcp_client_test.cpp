@@ -1,4 +1,4 @@
-#include "skyloop/transport/tcp_client.hpp"
+#include "wire/transport/tcp_client.hpp"
 
 #include <gmock/gmock.h>
 

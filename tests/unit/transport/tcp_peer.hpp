@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "skyloop/transport/file_descriptor.hpp"
+#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop::test {
 

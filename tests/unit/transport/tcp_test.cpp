@@ -1,4 +1,4 @@
-#include "skyloop/transport/tcp.hpp"
+#include "wire/transport/tcp.hpp"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

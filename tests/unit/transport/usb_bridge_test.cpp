@@ -1,4 +1,4 @@
-#include "skyloop/transport/usb_bridge.hpp"
+#include "wire/transport/usb_bridge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

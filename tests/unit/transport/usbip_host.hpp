@@ -3,7 +3,7 @@
 
 #include <initializer_list>
 
-#include "skyloop/transport/usbip_messages.hpp"
+#include "wire/transport/usbip_messages.hpp"
 
 namespace skyloop::test {
 

@@ -1,4 +1,4 @@
-#include "skyloop/transport/usbip_messages.hpp"
+#include "wire/transport/usbip_messages.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "skyloop/transport/usbip_server.hpp"
+#include "wire/transport/usbip_server.hpp"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <iterator>
 
-#include "skyloop/transport/file_descriptor.hpp"
 #include "usbip_host.hpp"
+#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

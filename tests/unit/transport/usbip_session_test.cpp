@@ -1,4 +1,4 @@
-#include "skyloop/transport/usbip_session.hpp"
+#include "wire/transport/usbip_session.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

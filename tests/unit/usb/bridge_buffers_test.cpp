@@ -1,4 +1,4 @@
-#include "skyloop/usb/bridge_buffers.hpp"
+#include "wire/usb/bridge_buffers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "skyloop/usb/cdc_acm.hpp"
+#include "wire/usb/cdc_acm.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // What hubs say of the power of their ports.
-#include "skyloop/usb/hub_port_power.hpp"
+#include "wire/usb/hub_port_power.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

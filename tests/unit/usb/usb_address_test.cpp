@@ -1,4 +1,4 @@
-#include "skyloop/usb/usb_address.hpp"
+#include "wire/usb/usb_address.hpp"
 
 #include <gtest/gtest.h>
 

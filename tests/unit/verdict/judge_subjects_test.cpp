@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "run/verdict/judge.hpp"
 #include "seen_run.hpp"
-#include "skyloop/verdict/judge.hpp"
 
 namespace skyloop {
 namespace {

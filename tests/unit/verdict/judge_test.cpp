@@ -1,5 +1,5 @@
 // Sentences over runs made by hand: each time, fulfilled and not.
-#include "skyloop/verdict/judge.hpp"
+#include "run/verdict/judge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Reports are read back as their readers do.
-#include "skyloop/verdict/reports.hpp"
+#include "run/verdict/reports.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "skyloop/geo/local_frame.hpp"
-#include "skyloop/verdict/expectation_sentence.hpp"
-#include "skyloop/verdict/judge.hpp"
+#include "base/geo/local_frame.hpp"
+#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/judge.hpp"
 
 namespace skyloop::test {
 

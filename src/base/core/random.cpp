@@ -1,0 +1,60 @@
+#include "base/core/random.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "base/core/digest.hpp"
+
+namespace skyloop {
+namespace {
+
+// SplitMix64 (Steele, Lea and Flood, 2014): spreads a seed over the whole state.
+std::uint64_t split_mix(std::uint64_t& x) {
+    x += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = x;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+}
+
+}  // namespace
+
+RandomStream::RandomStream(std::uint64_t seed, std::string_view name) {
+    std::uint64_t x = seed;
+    x = split_mix(x) ^ fnv1a_64(name);
+    for (std::uint64_t& word : state_)
+        word = split_mix(x);
+}
+
+std::uint64_t RandomStream::bits() {
+    const std::uint64_t result = std::rotl(state_[0] + state_[3], 23) + state_[0];
+    const std::uint64_t t = state_[1] << 17;
+    state_[2] ^= state_[0];
+    state_[3] ^= state_[1];
+    state_[1] ^= state_[2];
+    state_[0] ^= state_[3];
+    state_[2] ^= t;
+    state_[3] = std::rotl(state_[3], 45);
+    return result;
+}
+
+double RandomStream::uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+
+double RandomStream::normal() {
+    if (spare_normal_) {
+        const double value = *spare_normal_;
+        spare_normal_.reset();
+        return value;
+    }
+    for (;;) {
+        const double u = 2 * uniform() - 1;
+        const double v = 2 * uniform() - 1;
+        const double s = u * u + v * v;
+        if (s >= 1 || s == 0) continue;
+        const double factor = std::sqrt(-2 * std::log(s) / s);
+        spare_normal_ = v * factor;
+        return u * factor;
+    }
+}
+
+}  // namespace skyloop

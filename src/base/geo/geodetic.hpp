@@ -1,0 +1,54 @@
+/// Latitude, longitude and height on the WGS-84 ellipsoid.
+#pragma once
+
+#include <string>
+#include <tl/expected.hpp>
+
+#include "base/core/units.hpp"
+#include "base/geo/frames.hpp"
+
+namespace skyloop {
+
+/// Height above the WGS-84 ellipsoid.
+struct EllipsoidalHeight {
+    Metres above_ellipsoid;
+    auto operator<=>(const EllipsoidalHeight&) const = default;
+};
+
+/// Height above mean sea level (the geoid).
+struct MslHeight {
+    Metres above_sea_level;
+    auto operator<=>(const MslHeight&) const = default;
+};
+
+/// Geodetic coordinates, WGS-84.
+struct Geodetic {
+    Angle latitude;   ///< −90 … +90°
+    Angle longitude;  ///< −180 … +180°
+    EllipsoidalHeight height;
+    /// @param height_m metres above the ellipsoid
+    static Geodetic degrees(double latitude, double longitude, double height_m);
+};
+
+/// The place that a user names, or what is wrong with it: "latitude is 91; expected …".
+/// @param latitude degrees, −90 … 90
+/// @param longitude degrees, −360 … 360; taken as −180 … 180
+/// @param height_m metres above the ellipsoid, −10 000 … 10 000 000: below any ground, below the satellites
+tl::expected<Geodetic, std::string> place_from_degrees(double latitude, double longitude, double height_m);
+
+Position<Ecef> to_ecef(const Geodetic& place);
+Geodetic to_geodetic(const Position<Ecef>& point);
+
+/// Radii of curvature of the ellipsoid, metres: meridian M and prime vertical N (MODELS.md 3.10).
+struct CurvatureRadii {
+    double meridian = 0;
+    double prime_vertical = 0;
+};
+CurvatureRadii curvature_radii(Angle latitude);
+
+/// The height above mean sea level, given the geoid undulation N there: H = h − N.
+inline MslHeight above_sea_level(EllipsoidalHeight height, Metres undulation) {
+    return {height.above_ellipsoid - undulation};
+}
+
+}  // namespace skyloop

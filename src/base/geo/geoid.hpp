@@ -1,0 +1,35 @@
+/// The EGM96 geoid.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "base/core/result.hpp"
+#include "base/geo/geodetic.hpp"
+
+namespace GeographicLib {
+class Geoid;
+}
+
+namespace skyloop {
+
+/// Geoid undulations on the 15-minute EGM96 grid, cubic interpolation (GeographicLib::Geoid).
+class Geoid {
+public:
+    /// Opens a grid file in GeographicLib's format, e.g. build/share/skyloop/geoids/egm96-15.pgm.
+    /// Fails with `outside` and a sentence that says how the file is made.
+    static Result<Geoid> open(const std::filesystem::path& grid_file);
+
+    Geoid(Geoid&&) noexcept;
+    Geoid& operator=(Geoid&&) noexcept;
+    ~Geoid();
+
+    /// Height of the geoid above the ellipsoid, N.
+    [[nodiscard]] Metres undulation(Angle latitude, Angle longitude) const;
+
+private:
+    explicit Geoid(std::unique_ptr<GeographicLib::Geoid> grid);
+    std::unique_ptr<GeographicLib::Geoid> grid_;
+};
+
+}  // namespace skyloop

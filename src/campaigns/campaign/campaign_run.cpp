@@ -1,0 +1,173 @@
+#include "campaigns/campaign/campaign_run.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "base/core/spelling.hpp"
+#include "campaigns/campaign/run_metrics.hpp"
+#include "detail/vehicle_run.hpp"
+#include "run/emulator/load_track.hpp"
+#include "run/emulator/wires.hpp"
+#include "run/verdict/judge.hpp"
+
+namespace skyloop {
+namespace {
+
+bool starts_now(const Scenario& scenario) {
+    if (scenario.run.start) return false;
+    return scenario.run.start_now || scenario.sky.rebase_navigation || scenario.sky.navigation.empty();
+}
+
+// As it stands at the head of a column: on one line, and unlike those before it.
+void add_title(std::vector<std::string>& titles, std::string first) {
+    std::replace_if(
+        first.begin(), first.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    std::string title = first;
+    for (int n = 2; std::find(titles.begin(), titles.end(), title) != titles.end(); ++n)
+        title = fmt::format("{} ({})", first, n);
+    titles.push_back(std::move(title));
+}
+
+std::vector<std::string> unique_titles(const Scenario& scenario) {
+    std::vector<std::string> titles;
+    for (const Expectation& expectation : scenario.expectations)
+        add_title(titles, expectation.title());
+    if (scenario.campaign && scenario.campaign->vehicle) add_title(titles, "vehicle");
+    return titles;
+}
+
+// All values of a run, and those of them that the campaign keeps.
+std::vector<std::optional<double>> kept_metrics(const RunMetrics& metrics, const std::vector<std::string>& names) {
+    const auto all = metric_names();
+    const auto values = metrics.values();
+    std::vector<std::optional<double>> kept;
+    for (const std::string& name : names)
+        kept.push_back(values.at(static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin())));
+    return kept;
+}
+
+RunResult begun_result(const CampaignRunSetup& setup, const PlannedRun& run) {
+    RunResult result{run.key, run.number, run.seed, "error", {}, {}, {}, {}};
+    for (const CampaignValue& value : run.values)
+        result.parameters.push_back(value.shown);
+    result.metrics.resize(setup.columns.metrics.size());
+    result.verdicts.resize(setup.columns.verdicts.size());
+    return result;
+}
+
+// A mistake of the scenario is the same every time.
+Result<RunResult> failed_result(RunResult result, const Error& error) {
+    if (error.code == ErrorCode::outside) return fail(error);
+    result.error = error.message;
+    return result;
+}
+
+void take_verdicts(RunResult& result, const std::vector<Verdict>& verdicts) {
+    if (verdicts.size() != result.verdicts.size()) {
+        result.error = fmt::format("the run has {} verdicts; expected {}, as the scenario without changes",
+                                   verdicts.size(), result.verdicts.size());
+        std::fill(result.metrics.begin(), result.metrics.end(), std::nullopt);
+        return;
+    }
+    for (std::size_t i = 0; i < verdicts.size(); ++i)
+        result.verdicts[i] = {std::string(outcome_name(verdicts[i].outcome)), verdicts[i].evidence};
+    result.status = is_success(verdicts) ? "passed" : "failed";
+}
+
+std::vector<std::string> names_of_receivers(const Emulator& emulator) {
+    std::vector<std::string> names;
+    for (const Station& station : emulator.stations())
+        names.push_back(station.name());
+    return names;
+}
+
+}  // namespace
+
+Result<Scenario> campaign_scenario(const Scenario& asked) {
+    Scenario scenario = asked;
+    if (starts_now(scenario))
+        return fail(ErrorCode::usage, fmt::format("{}: the run would begin now, each at another time; expected "
+                                                  "run.start, or navigation data that is not moved",
+                                                  scenario.name));
+    if (!scenario.run.duration && !ends_with_its_path(scenario))
+        return fail(ErrorCode::usage, fmt::format("{}: the run has no end; expected run.duration_s, or a trajectory "
+                                                  "with end = \"stop\"",
+                                                  scenario.name));
+    const bool vehicle = scenario.campaign && scenario.campaign->vehicle;
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i) {
+        if (!scenario.receivers[i].state_file.empty())
+            return fail(ErrorCode::usage, fmt::format("{}: {} keeps its memory in {}, which runs of a campaign would "
+                                                      "share; expected no state file",
+                                                      scenario.name, receiver_name(scenario, i),
+                                                      scenario.receivers[i].state_file.string()));
+        scenario.receivers[i].power.clear();
+    }
+    keep_scripted_clients(scenario);
+    if (vehicle) scenario.receivers.front().ports = {"pty"};
+    if (vehicle && scenario.run.speed != 1)
+        return fail(ErrorCode::usage, fmt::format("{}: run.speed is {}; a vehicle lives in real time, expected 1",
+                                                  scenario.name, scenario.run.speed));
+    scenario.outputs.clear();
+    return scenario;
+}
+
+RunMode campaign_mode(const Scenario& scenario) {
+    RunMode mode;
+    mode.virtual_time = !(scenario.campaign && scenario.campaign->vehicle);
+    return mode;
+}
+
+Result<ResultColumns> result_columns(const Scenario& scenario, const std::vector<std::string>& parameters) {
+    ResultColumns columns{parameters, {}, unique_titles(scenario)};
+    const auto known = metric_names();
+    const CampaignSettings campaign = scenario.campaign.value_or(CampaignSettings{});
+    for (const std::string& name : campaign.metrics) {
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            return fail(ErrorCode::usage,
+                        fmt::format("{}'{}' is no metric; expected some of {}{}", campaign.metrics_told_at, name,
+                                    fmt::join(known, " "), did_you_mean(name, known)));
+        if (std::find(columns.metrics.begin(), columns.metrics.end(), name) != columns.metrics.end())
+            return fail(ErrorCode::usage,
+                        fmt::format("{}'{}' is there twice; expected it once", campaign.metrics_told_at, name));
+        columns.metrics.push_back(name);
+    }
+    if (campaign.metrics.empty()) columns.metrics.assign(known.begin(), known.end());
+    return columns;
+}
+
+Result<RunResult> run_of_campaign(const CampaignRunSetup& setup, const PlannedRun& run,
+                                  const std::vector<ScenarioChange>& changes, const std::atomic<bool>& stop) {
+    RunResult result = begun_result(setup, run);
+    const auto asked = read_changed_scenario(setup.text, setup.file, changes);
+    if (!asked) return failed_result(std::move(result), asked.error());
+    const auto scenario = campaign_scenario(*asked);
+    if (!scenario) return failed_result(std::move(result), scenario.error());
+    auto assembly = assemble(*scenario, setup.data, campaign_mode(*scenario));
+    if (!assembly) return failed_result(std::move(result), assembly.error());
+    Emulator& emulator = *assembly->emulator;
+    const bool live = !campaign_mode(*scenario).virtual_time;
+    Judge judge(scenario->expectations,
+                {assembly->start, names_of_receivers(emulator), live, probe_environment(emulator), setup.orphans});
+    RunMetrics metrics(assembly->start);
+    emulator.add_observer(&judge);
+    emulator.add_observer(&metrics);
+    std::vector<Verdict> verdicts;
+    if (scenario->campaign && scenario->campaign->vehicle) {
+        auto vehicle = run_with_vehicle(*assembly, *scenario->campaign->vehicle, run,
+                                        {stop, setup.orphans != nullptr ? setup.orphans->listener() : nullptr});
+        if (!vehicle) return fail(vehicle.error());
+        verdicts.push_back(std::move(*vehicle));
+    } else {
+        emulator.run_until(assembly->end.value_or(GpsTime::max()), stop);
+    }
+    if (stop) return fail(ErrorCode::outside, "stopped before its end");
+    const std::vector<Verdict> judged = judge.finish(emulator.now());
+    verdicts.insert(verdicts.begin(), judged.begin(), judged.end());
+    result.metrics = kept_metrics(metrics, setup.columns.metrics);
+    take_verdicts(result, verdicts);
+    return result;
+}
+
+}  // namespace skyloop

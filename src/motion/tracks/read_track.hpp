@@ -1,0 +1,31 @@
+/// Recorded paths of every format that is read.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/bytes.hpp"
+#include "base/core/result.hpp"
+#include "base/geo/geodetic.hpp"
+#include "base/geo/geoid.hpp"
+#include "motion/trajectory/track.hpp"
+
+namespace skyloop {
+
+/// How a track is read.
+struct TrackReading {
+    const Geoid* geoid = nullptr;      ///< for heights above the sea; null: a file with such heights fails
+    std::optional<Geodetic> origin{};  ///< of local metres, and of heights above the ground; nothing: these fail
+};
+
+/// Reads a track; its format is told by its content, and by the ending of its name where the content says nothing.
+/// Places without times, and with times that cannot be used, are a route: Track::route.
+/// Fails with `input` and one line that begins with the name: what was found and what was expected.
+Result<Track> read_track(ByteSpan bytes, const std::string& name, const TrackReading& reading);
+
+/// Endings of names that are tracks, each with its dot: ".csv", ".gpx", … For messages and options.
+std::vector<std::string_view> track_endings();
+
+}  // namespace skyloop

@@ -1,0 +1,214 @@
+#include "receiver/logs/dataflash.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "detail/log_parts.hpp"
+
+namespace skyloop {
+namespace {
+
+// ArduPilot, libraries/AP_Logger/LogStructure.h, as FEEDS.md 1.8 sums it up.
+constexpr std::uint8_t dataflash_head_1 = 0xA3, dataflash_head_2 = 0x95, dataflash_fmt = 128;
+constexpr std::size_t dataflash_fmt_length = 89, dataflash_head = 3;
+
+std::size_t dataflash_size(char letter) {
+    static constexpr std::string_view one = "bBM", two = "hHcCg", four = "iIeELfn", eight = "qQd";
+    if (one.find(letter) != std::string_view::npos) return 1;
+    if (two.find(letter) != std::string_view::npos) return 2;
+    if (four.find(letter) != std::string_view::npos) return 4;
+    if (eight.find(letter) != std::string_view::npos) return 8;
+    return letter == 'a' || letter == 'Z' ? 64 : letter == 'N' ? 16 : 0;
+}
+
+std::string_view text_in(ByteSpan bytes, std::size_t at, std::size_t size) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()) + at, size);
+    return text.substr(0, text.find('\0'));
+}
+
+// IEEE 754 binary16.
+double half_number(std::uint16_t bits) {
+    const int exponent = bits >> 10 & 0x1F, fraction = bits & 0x3FF;
+    const double size = exponent == 0    ? std::ldexp(fraction, -24)
+                        : exponent == 31 ? std::nan("")
+                                         : std::ldexp(1024 + fraction, exponent - 25);
+    return (bits & 0x8000) != 0 ? -size : size;
+}
+
+double raw_value(ByteSpan record, const DataflashColumn& column) {
+    const std::size_t at = column.offset;
+    switch (column.letter) {
+        case 'b':
+            return number_at<std::int8_t>(record, at);
+        case 'B':
+        case 'M':
+            return record[at];
+        case 'h':
+        case 'c':
+            return number_at<std::int16_t>(record, at);
+        case 'H':
+        case 'C':
+            return number_at<std::uint16_t>(record, at);
+        case 'i':
+        case 'e':
+        case 'L':
+            return number_at<std::int32_t>(record, at);
+        case 'I':
+        case 'E':
+            return number_at<std::uint32_t>(record, at);
+        case 'q':
+            return static_cast<double>(number_at<std::int64_t>(record, at));
+        case 'Q':
+            return static_cast<double>(number_at<std::uint64_t>(record, at));
+        case 'f':
+            return static_cast<double>(number_at<float>(record, at));
+        case 'd':
+            return number_at<double>(record, at);
+        case 'g':
+            return half_number(number_at<std::uint16_t>(record, at));
+        default:
+            return 0;
+    }
+}
+
+// FMTU, MULT: the multiplier of an id, of which ArduPilot keeps the list in LogStructure.h (log_Multipliers).
+std::optional<double> multiplier_of(char id) {
+    switch (id) {
+        case '-':
+        case '?':
+        case '0':
+            return 1;
+        case '1':
+            return 1e1;
+        case 'A':
+            return 1e-1;
+        case 'B':
+            return 1e-2;
+        case 'C':
+            return 1e-3;
+        case 'D':
+            return 1e-4;
+        case 'E':
+            return 1e-5;
+        case 'F':
+            return 1e-6;
+        case 'G':
+            return 1e-7;
+        case 'I':
+            return 1e-9;
+        case '2':
+            return 1e2;
+        case '!':
+            return 3.6;
+        case '/':
+            return 3600;
+        default:
+            return std::nullopt;
+    }
+}
+
+double letter_scale(char letter) {
+    static constexpr std::string_view hundredths = "cCeE";
+    if (hundredths.find(letter) != std::string_view::npos) return 1e-2;
+    return letter == 'L' ? 1e-7 : 1;
+}
+
+}  // namespace
+
+std::optional<double> DataflashRecord::value(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view name : names) {
+        const auto found = format_.columns.find(name);
+        if (found == format_.columns.end()) continue;
+        const DataflashColumn& column = found->second;
+        if (!is_inside(column)) continue;
+        const double result = raw_value(bytes_, column) * column.multiplier.value_or(letter_scale(column.letter));
+        if (std::isfinite(result)) return result;
+    }
+    return std::nullopt;
+}
+
+std::optional<double> DataflashRecord::raw(std::initializer_list<std::string_view> names) const {
+    for (const std::string_view name : names)
+        if (const auto found = format_.columns.find(name); found != format_.columns.end() && is_inside(found->second))
+            return raw_value(bytes_, found->second);
+    return std::nullopt;
+}
+
+bool DataflashRecord::is_inside(const DataflashColumn& column) const {
+    return column.offset + dataflash_size(column.letter) <= bytes_.size();
+}
+
+std::optional<double> DataflashRecord::instance() const {
+    return format_.instance.empty() ? std::nullopt : raw({format_.instance});
+}
+
+std::optional<DataflashRecord> DataflashReader::next() {
+    while (at_ + dataflash_head <= bytes_.size()) {
+        const std::uint8_t type = bytes_[at_ + 2];
+        const bool head = bytes_[at_] == dataflash_head_1 && bytes_[at_ + 1] == dataflash_head_2;
+        const std::size_t length = type == dataflash_fmt ? dataflash_fmt_length
+                                   : formats_[type]      ? formats_[type]->length
+                                                         : 0;
+        if (!head || length == 0) {
+            ++at_;
+            ++skipped_;
+            continue;
+        }
+        if (at_ + length > bytes_.size()) {
+            cut_ = true;
+            return std::nullopt;
+        }
+        const ByteSpan record = bytes_.subspan(at_, length);
+        at_ += length;
+        if (type == dataflash_fmt)
+            take_format(record);
+        else if (formats_[type]->name == "FMTU")
+            take_units(record);
+        else
+            return DataflashRecord(*formats_[type], record);
+    }
+    return std::nullopt;
+}
+
+void DataflashReader::take_format(ByteSpan record) {
+    DataflashFormat format;
+    const std::uint8_t type = record[3];
+    format.length = record[4];
+    format.name = text_in(record, 5, 4);
+    const std::string_view letters = text_in(record, 9, 16);
+    std::string_view names = text_in(record, 25, 64);
+    std::size_t offset = dataflash_head;
+    for (const char letter : letters) {
+        const std::size_t size = dataflash_size(letter);
+        const std::size_t end = std::min(names.find(','), names.size());
+        const std::string column(names.substr(0, end));
+        names.remove_prefix(std::min(end + 1, names.size()));
+        if (size == 0 || offset + size > format.length) return;  // makes no sense: its records are passed over
+        format.columns[column] = {letter, offset, {}};
+        format.order.push_back(column);
+        offset += size;
+    }
+    if (format.length < dataflash_head || type == dataflash_fmt) return;
+    if ((format.name == "GPS" || format.name == "GPA") && format.columns.contains("I")) format.instance = "I";
+    formats_[type] = std::move(format);
+}
+
+// FMTU: TimeUS, type, 16 units, 16 multipliers.
+void DataflashReader::take_units(ByteSpan record) {
+    constexpr std::size_t length = dataflash_head + 8 + 1 + 16 + 16;
+    if (record.size() < length) return;
+    auto& format = formats_[record[dataflash_head + 8]];
+    if (!format) return;
+    const std::string_view units = text_in(record, dataflash_head + 9, 16);
+    const std::string_view multipliers = text_in(record, dataflash_head + 25, 16);
+    for (std::size_t i = 0; i < format->order.size(); ++i) {
+        if (i < units.size() && units[i] == '#') format->instance = format->order[i];
+        if (i < multipliers.size()) format->columns[format->order[i]].multiplier = multiplier_of(multipliers[i]);
+    }
+}
+
+bool is_dataflash(ByteSpan bytes) {
+    return bytes.size() >= dataflash_head && bytes[0] == dataflash_head_1 && bytes[1] == dataflash_head_2;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,139 @@
+// The epochs of a log in one order of time, whatever single clocks, restarts and joined recordings made of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "detail/log_parts.hpp"
+
+namespace skyloop {
+namespace {
+
+using LogEpochs = std::vector<LogEpoch>;
+
+// More than a clock is ever set back by while it counts on: the recording began anew.
+constexpr Nanoseconds log_begins_anew = std::chrono::seconds(2);
+
+bool knows_its_place(const LogEpoch& epoch) { return epoch.type != FixType::none && epoch.type != FixType::time_only; }
+
+bool earlier(const LogEpoch& a, const LogEpoch& b) { return a.time < b.time; }
+
+// Leaves out single epochs that are ahead of the one after them, which itself follows the one before.
+std::size_t leave_out_ahead(LogEpochs& epochs) {
+    LogEpochs kept;
+    std::size_t ahead = 0;
+    for (LogEpoch& epoch : epochs) {
+        const std::size_t count = kept.size();
+        if (count >= 2 && epoch.time < kept[count - 1].time - log_begins_anew && epoch.time > kept[count - 2].time) {
+            kept.pop_back();
+            ++ahead;
+        }
+        kept.push_back(std::move(epoch));
+    }
+    epochs = std::move(kept);
+    return ahead;
+}
+
+// Cuts where the time goes back by more than two seconds.
+std::vector<LogEpochs> recordings_of(LogEpochs epochs) {
+    std::vector<LogEpochs> parts;
+    for (LogEpoch& epoch : epochs) {
+        if (parts.empty() || epoch.time < parts.back().back().time - log_begins_anew) parts.emplace_back();
+        parts.back().push_back(std::move(epoch));
+    }
+    return parts;
+}
+
+// The epochs of a part, each later than the one before.
+std::size_t leave_out_repeated(LogEpochs& part) {
+    LogEpochs kept;
+    for (LogEpoch& epoch : part)
+        if (kept.empty() || epoch.time > kept.back().time) kept.push_back(std::move(epoch));
+    const std::size_t repeated = part.size() - kept.size();
+    part = std::move(kept);
+    return repeated;
+}
+
+struct OrderCounts {
+    std::size_t ahead = 0, repeated = 0, parts = 1;
+};
+
+// Recordings that have times of their own follow one another in time; of those that do not the longest stays. One epoch
+// in front of a recording that goes on earlier ran ahead.
+LogEpochs joined(LogEpochs epochs, OrderCounts& counts) {
+    std::vector<LogEpochs> parts = recordings_of(std::move(epochs));
+    constexpr std::size_t fewest_behind = 3;
+    if (parts.size() > 1 && parts[0].size() == 1 && parts[1].size() >= fewest_behind) {
+        parts.erase(parts.begin());
+        ++counts.ahead;
+    }
+    for (LogEpochs& part : parts)
+        counts.repeated += leave_out_repeated(part);
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const LogEpochs& a, const LogEpochs& b) { return a.size() > b.size(); });
+    std::map<GpsTime, LogEpochs> kept;  // by their begin; none reaches into the next
+    for (LogEpochs& part : parts) {
+        const auto next = kept.upper_bound(part.front().time);
+        const bool overlaps = (next != kept.begin() && std::prev(next)->second.back().time >= part.front().time) ||
+                              (next != kept.end() && next->first <= part.back().time);
+        if (overlaps)
+            counts.repeated += part.size();
+        else
+            kept.emplace_hint(next, part.front().time, std::move(part));
+    }
+    counts.parts = kept.size();
+    LogEpochs whole;
+    for (auto& [begin, part] : kept)
+        whole.insert(whole.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
+    return whole;
+}
+
+// Of the epochs without a place those that fit between the ones with a place that stand beside them in the log.
+LogEpochs fitting(const LogEpochs& epochs) {
+    const auto places_from = [&](auto from, auto to) { return std::find_if(from, to, knows_its_place); };
+    LogEpochs fit;
+    const LogEpoch* before = nullptr;
+    auto after = places_from(epochs.begin(), epochs.end());
+    for (auto epoch = epochs.begin(); epoch != epochs.end(); ++epoch) {
+        if (epoch == after) {
+            before = &*epoch;
+            after = places_from(epoch + 1, epochs.end());
+            continue;
+        }
+        const bool late_enough = before == nullptr || epoch->time > before->time;
+        const bool early_enough = after == epochs.end() || epoch->time < after->time;
+        const bool begins_anew = before != nullptr && after != epochs.end() && after->time <= before->time;
+        if (begins_anew ? late_enough || early_enough : late_enough && early_enough) fit.push_back(*epoch);
+    }
+    return fit;
+}
+
+}  // namespace
+
+void put_epochs_in_order(ReceiverLog& log) {
+    OrderCounts counts;
+    LogEpochs& epochs = log.epochs;
+    counts.ahead = leave_out_ahead(epochs);
+    LogEpochs placed;
+    std::copy_if(epochs.begin(), epochs.end(), std::back_inserter(placed), knows_its_place);
+    if (placed.empty()) {
+        epochs = joined(std::move(epochs), counts);
+    } else {
+        const std::size_t without = epochs.size() - placed.size();
+        LogEpochs others = fitting(epochs);
+        counts.repeated += without - others.size();
+        epochs = joined(std::move(placed), counts);
+        epochs.insert(epochs.end(), std::make_move_iterator(others.begin()), std::make_move_iterator(others.end()));
+        std::stable_sort(epochs.begin(), epochs.end(), earlier);
+        counts.repeated += leave_out_repeated(epochs);
+    }
+    if (counts.parts > 1)
+        log.notes.push_back(
+            fmt::format("{} recordings do not follow each other in time; they were put in its order", counts.parts));
+    add_note(log, counts.ahead, "epochs have a time that ran ahead and were left out");
+    add_note(log, counts.repeated, "epochs that repeat a time or go back were left out");
+}
+
+}  // namespace skyloop

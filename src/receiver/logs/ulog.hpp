@@ -1,0 +1,61 @@
+/// The container of PX4's logs.
+///
+/// Layout: PX4 user guide, "ULog File Format".
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/bytes.hpp"
+#include "base/core/result.hpp"
+
+namespace skyloop {
+
+/// A field of a format, by its name; nested formats are flattened, as "esc[0].rpm".
+struct UlogField {
+    std::string type;
+    std::size_t offset = 0, size = 0;
+};
+using UlogFields = std::map<std::string, UlogField, std::less<>>;
+
+/// One record of a topic.
+class UlogRecord {
+public:
+    UlogRecord(const UlogFields& fields, ByteSpan bytes) : fields_(fields), bytes_(bytes) {}
+    /// The value of the first of these fields that there is, or nothing.
+    [[nodiscard]] std::optional<double> value(std::initializer_list<std::string_view> names) const;
+    [[nodiscard]] std::optional<double> value(std::string_view name) const { return value({name}); }
+    [[nodiscard]] bool has(std::string_view name) const { return fields_.contains(name); }
+
+private:
+    const UlogFields& fields_;
+    ByteSpan bytes_;
+};
+
+/// All records of one topic and instance.
+struct UlogStream {
+    std::string topic;
+    std::size_t instance = 0;
+    UlogFields fields;
+    std::vector<ByteSpan> records;
+};
+
+struct Ulog {
+    std::vector<UlogStream> streams;  ///< of the asked topics
+    std::string hardware;             ///< information "ver_hw"
+    std::size_t dropouts = 0, dropout_ms = 0, skipped_bytes = 0, cut_records = 0;
+};
+
+/// Whether the bytes begin as such a log does.
+bool is_ulog(ByteSpan bytes);
+/// Reads the records of some topics. Damage is passed over and counted.
+/// Fails with `input` for a file that says it holds what a reader of today does not know.
+Result<Ulog> parse_ulog(ByteSpan bytes, const std::string& name, const std::vector<std::string_view>& topics);
+
+}  // namespace skyloop

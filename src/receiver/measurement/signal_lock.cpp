@@ -1,0 +1,107 @@
+#include "detail/signal_lock.hpp"
+
+#include <algorithm>
+
+namespace skyloop {
+namespace {
+
+constexpr double strongest_signal = 50;     // dB-Hz; found first
+constexpr double shortest_search = 0.15;    // of the whole time
+constexpr double share_of_chance = 0.5;     // of what lies above the shortest
+constexpr double certain_difference = 1.0;  // dB; keeps the share of strength finite for any threshold
+
+DbHz search_threshold(const AcquisitionParameters& parameters, StartKind knowledge) {
+    return knowledge == StartKind::cold ? parameters.cold_threshold : parameters.warm_threshold;
+}
+
+bool passed(GpsTime since, GpsTime now, Seconds span) { return difference(now, since) >= span; }
+
+}  // namespace
+
+void SignalLock::advance(const AcquisitionParameters& parameters, const SignalSight& sight, GpsTime now) {
+    if (!sight.cn0) {
+        if (code_since_) lose(now);
+        found_at_.reset();
+        return;
+    }
+    if (code_since_)
+        hold_code(parameters, *sight.cn0, now);
+    else
+        search(parameters, sight, now);
+    if (code_since_) hold_phase(parameters, sight, now);
+}
+
+void SignalLock::forget() {
+    found_at_.reset();
+    weak_since_.reset();
+    lost_at_.reset();
+    code_since_.reset();
+    pull_in_since_.reset();
+    phase_since_.reset();
+    half_cycle_resolved_ = false;
+}
+
+void SignalLock::search(const AcquisitionParameters& parameters, const SignalSight& sight, GpsTime now) {
+    const bool remembered = lost_at_ && !passed(*lost_at_, now, parameters.reacquisition_memory);
+    const StartKind knowledge = remembered ? StartKind::hot : sight.knowledge;
+    if (!sight.searchable || !(*sight.cn0 >= search_threshold(parameters, knowledge))) {
+        found_at_.reset();
+        return;
+    }
+    if (!found_at_) {
+        Seconds takes = remembered ? parameters.reacquisition : search_time(parameters, sight);
+        // What has been lost for longer is not found sooner.
+        if (lost_at_) takes = std::max(takes, parameters.reacquisition);
+        found_at_ = advanced(now, takes);
+    }
+    if (now < *found_at_) return;
+    code_since_ = now;
+    found_at_.reset();
+}
+
+void SignalLock::hold_code(const AcquisitionParameters& parameters, DbHz cn0, GpsTime now) {
+    if (cn0 >= parameters.loss_threshold) {
+        weak_since_.reset();
+        return;
+    }
+    if (!weak_since_) weak_since_ = now;
+    if (passed(*weak_since_, now, parameters.loss_after)) lose(now);
+}
+
+void SignalLock::hold_phase(const AcquisitionParameters& parameters, const SignalSight& sight, GpsTime now) {
+    const DbHz threshold = phase_since_ ? parameters.phase_loss_threshold : parameters.phase_threshold;
+    if (!sight.phase_trackable || !(*sight.cn0 >= threshold)) {
+        pull_in_since_.reset();
+        phase_since_.reset();
+        half_cycle_resolved_ = false;
+        return;
+    }
+    if (!pull_in_since_) pull_in_since_ = now;
+    if (!phase_since_ && passed(*pull_in_since_, now, parameters.pull_in)) phase_since_ = now;
+    half_cycle_resolved_ = phase_since_ && (pilot_ || passed(*phase_since_, now, parameters.half_cycle_after));
+}
+
+void SignalLock::lose(GpsTime now) {
+    forget();
+    lost_at_ = now;
+}
+
+Seconds SignalLock::search_time(const AcquisitionParameters& parameters, const SignalSight& sight) {
+    const double chance = searches_.uniform();
+    const double threshold = search_threshold(parameters, sight.knowledge).value();
+    const double weakness = std::clamp(
+        (strongest_signal - sight.cn0->value()) / std::max(strongest_signal - threshold, certain_difference), 0.0, 1.0);
+    const double part =
+        shortest_search + (1 - shortest_search) * (share_of_chance * chance + (1 - share_of_chance) * weakness);
+    switch (sight.knowledge) {
+        case StartKind::cold:
+            return parameters.cold_search * part;
+        case StartKind::warm:
+            return parameters.warm_search * part;
+        case StartKind::hot:
+            break;
+    }
+    return parameters.hot_search * part;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,160 @@
+#include "receiver/measurement/subframe_reception.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "detail/warned_broadcast.hpp"
+#include "world/gnss/broadcast_d1.hpp"
+#include "world/gnss/broadcast_glonass.hpp"
+#include "world/gnss/broadcast_inav.hpp"
+#include "world/gnss/broadcast_lnav.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::chrono::milliseconds travel_time{70};  // a medium one; the true one lies within 20 ms of it
+constexpr std::chrono::seconds longest_gap{10};
+constexpr std::chrono::seconds subframe_length{6}, page_length{2};
+
+// The number 1 … 5 of the subframe that ends with an instant, in frames of 30 s from the start of the week on.
+std::optional<int> subframe_ending(Nanoseconds tow) {
+    if (tow % subframe_length != Nanoseconds(0)) return std::nullopt;
+    const auto count = (tow / subframe_length + 4) % 5;
+    return static_cast<int>(count) + 1;
+}
+
+template <class Words>
+std::vector<std::uint32_t> as_vector(const Words& words) {
+    return {words.begin(), words.end()};
+}
+
+Nanoseconds length_of(Constellation c) {
+    const bool short_ones = c == Constellation::galileo || c == Constellation::glonass;
+    return short_ones ? page_length : subframe_length;
+}
+
+// What is needed to make a message.
+struct Sender {
+    const NavigationSource& sent;
+    const LeapSeconds& leap_seconds;
+    GpsTime end;
+
+    [[nodiscard]] std::vector<std::uint32_t> lnav(const KeplerEphemeris& record) const {
+        const auto subframe = subframe_ending(week_and_tow(end).tow);
+        if (!subframe) return {};
+        if (*subframe <= 3) return as_vector(lnav_ephemeris_subframe(record, *subframe, end));
+        return as_vector(lnav_system_subframe({&sent, leap_seconds, record.satellite.constellation}, *subframe, end));
+    }
+    [[nodiscard]] std::vector<std::uint32_t> d1(const KeplerEphemeris& record) const {
+        const auto subframe = subframe_ending(bdt_week_and_tow(end).tow);
+        if (!subframe || *subframe > 3) return {};
+        return as_vector(d1_subframe(record, sent.ionosphere().beidou, *subframe, end));
+    }
+    [[nodiscard]] std::vector<std::uint32_t> inav(const KeplerEphemeris& record, Signal signal) const {
+        const auto word = inav_word_ending(signal, end);
+        if (!word) return {};
+        return as_vector(inav_pages({record, sent.ionosphere(), leap_seconds}, *word, end));
+    }
+    [[nodiscard]] std::vector<std::uint32_t> words(const KeplerEphemeris& record, Signal signal) const {
+        if (record.message == NavigationMessage::almanac) return {};
+        switch (record.satellite.constellation) {
+            case Constellation::gps:
+            case Constellation::qzss:
+                return signal == Signal::l1 ? lnav(record) : std::vector<std::uint32_t>();
+            case Constellation::galileo:
+                return signal == Signal::l1 || signal == Signal::e5b ? inav(record, signal)
+                                                                     : std::vector<std::uint32_t>();
+            case Constellation::beidou:
+                return signal == Signal::b1i && !is_beidou_geo(record.satellite) ? d1(record)
+                                                                                 : std::vector<std::uint32_t>();
+            default:
+                return {};
+        }
+    }
+    [[nodiscard]] std::vector<std::uint32_t> words(const GlonassEphemeris& record, Signal signal) const {
+        const auto string = glonass_string_ending(end, leap_seconds);
+        if (signal != Signal::g1 || !string || *string > 5) return {};
+        return as_vector(glonass_string(record, *string, end, leap_seconds));
+    }
+    [[nodiscard]] static std::vector<std::uint32_t> words(const SbasEphemeris&, Signal) { return {}; }
+};
+
+// How long a receiver listens until a message ends by which it has a whole record; nothing for other messages. LNAV and
+// D1: subframes 1 to 3; I/NAV: words 1 to 5, of E1-B from word 2 to word 5, of E5b-I from word 1 to word 4 (OS SIS ICD
+// 2.0, tables 37 and 38); GLONASS: strings 1 to 5.
+std::optional<std::chrono::seconds> record_length(Constellation constellation, Signal signal, GpsTime end,
+                                                  const LeapSeconds& leap_seconds) {
+    using std::chrono::seconds;
+    switch (constellation) {
+        case Constellation::gps:
+        case Constellation::qzss:
+            return subframe_ending(week_and_tow(end).tow) == 3 ? std::optional(seconds(18)) : std::nullopt;
+        case Constellation::beidou:
+            return subframe_ending(bdt_week_and_tow(end).tow) == 3 ? std::optional(seconds(18)) : std::nullopt;
+        case Constellation::galileo:
+            return inav_word_ending(signal, end) == (signal == Signal::l1 ? 5 : 4) ? std::optional(seconds(30))
+                                                                                   : std::nullopt;
+        case Constellation::glonass:
+            return glonass_string_ending(end, leap_seconds) == 5 ? std::optional(seconds(10)) : std::nullopt;
+        default:
+            return std::nullopt;
+    }
+}
+
+}  // namespace
+
+std::optional<Subframe> SubframeReception::message(const Tracked& tracked, const NavigationSource& sent,
+                                                   GpsTime end) const {
+    const auto& [satellite, signal] = tracked;
+    const std::optional<Ephemeris> record = sent.ephemeris(satellite, end);
+    if (!record) return std::nullopt;
+    const Sender sender{sent, leap_seconds_, end};
+    Subframe result{satellite, signal, end, 0, {}};
+    result.words = std::visit([&](const auto& r) { return sender.words(r, tracked.second); }, *record);
+    if (result.words.empty()) return std::nullopt;
+    if (const auto* glonass = std::get_if<GlonassEphemeris>(&*record))
+        result.frequency_channel = glonass->frequency_channel;
+    return result;
+}
+
+void SubframeReception::follow(const Observations& observations, GpsTime time) {
+    std::map<Tracked, GpsTime> now;
+    for (const Observation& o : observations.signals) {
+        if (!o.pseudorange) continue;
+        const Tracked tracked{o.satellite, o.signal};
+        const auto before = tracked_since_.find(tracked);
+        now.emplace(tracked, before == tracked_since_.end() ? time : before->second);
+    }
+    tracked_since_ = std::move(now);
+}
+
+std::vector<Subframe> SubframeReception::receive(const Observations& observations, const NavigationSource& sent,
+                                                 GpsTime time) {
+    if (last_ && (time - *last_ > longest_gap || time < *last_)) {
+        last_.reset();
+        tracked_since_.clear();
+    }
+    follow(observations, time);
+    const WarnedBroadcast broadcast(sent, observations);
+    std::vector<Subframe> result;
+    if (last_) {
+        // Every message ends with a whole second of GPS time.
+        for (GpsTime end = std::chrono::ceil<std::chrono::seconds>(*last_ - travel_time); end + travel_time <= time;
+             end += std::chrono::seconds(1)) {
+            if (end + travel_time <= *last_) continue;
+            for (const auto& [tracked, since] : tracked_since_) {
+                if (end - length_of(tracked.first.constellation) + travel_time < since) continue;
+                auto received = message(tracked, broadcast, end);
+                if (!received) continue;
+                const auto length = record_length(tracked.first.constellation, tracked.second, end, leap_seconds_);
+                if (length && end - *length + travel_time >= since)
+                    received->record = broadcast.ephemeris(tracked.first, end);
+                result.push_back(std::move(*received));
+            }
+        }
+    }
+    last_ = time;
+    return result;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,53 @@
+/// The thermal noise of the loops that track a signal.
+#pragma once
+
+#include "base/core/units.hpp"
+
+namespace skyloop {
+
+/// C/N0 as a ratio, taken out of its logarithm once for all the formulas that need it.
+class CarrierToNoise {
+public:
+    /// Not explicit: whoever has a DbHz passes it as it is.
+    CarrierToNoise(DbHz cn0);
+    /// Hz
+    [[nodiscard]] double ratio() const { return ratio_; }
+
+private:
+    double ratio_;
+};
+
+/// A non-coherent early-late power code loop.
+struct CodeLoop {
+    Hertz bandwidth{0.5};            ///< B_n, one-sided
+    double spacing_chips = 0.25;     ///< D, early to late
+    Seconds integration{0.02};       ///< T, before detection
+    Hertz front_end_bandwidth{8e6};  ///< B_fe, two-sided
+    Hertz chip_rate{1.023e6};
+    /// Length of a chip along the ray.
+    [[nodiscard]] Metres chip_length() const;
+};
+
+/// Standard deviation of the code phase, chips, for BPSK-R: three regimes of the spacing D against the chips that the
+/// front end resolves (Kaplan and Hegarty, section on DLL errors, after Betz and Kolodziejski; MODELS.md 7.9).
+double code_jitter_chips(const CodeLoop& loop, CarrierToNoise cn0);
+/// The same in metres.
+Metres code_jitter(const CodeLoop& loop, CarrierToNoise cn0);
+
+/// A carrier loop: phase (Costas, arctangent) or frequency.
+struct CarrierLoop {
+    Hertz bandwidth{15};        ///< B_n, one-sided
+    Seconds integration{0.02};  ///< T, before detection
+};
+
+/// Standard deviation of the carrier phase (Kaplan and Hegarty, PLL thermal noise; MODELS.md 7.9).
+Angle phase_jitter(const CarrierLoop& loop, CarrierToNoise cn0);
+
+/// Standard deviation of the carrier frequency (Kaplan and Hegarty, FLL thermal noise; MODELS.md 7.9).
+/// @param threshold_factor F: 1 at high C/N0, 2 near the threshold
+Hertz frequency_jitter(const CarrierLoop& loop, CarrierToNoise cn0, double threshold_factor = 1);
+
+/// A frequency error as the range rate that it is taken for.
+MetresPerSecond range_rate_of(Hertz frequency_error, Hertz carrier);
+
+}  // namespace skyloop

@@ -1,0 +1,28 @@
+/// The one list of the SBF blocks that are known here.
+#pragma once
+
+#include "receiver/protocol/sbf_cartesian_blocks.hpp"
+#include "receiver/protocol/sbf_measurement_blocks.hpp"
+#include "receiver/protocol/sbf_navigation_blocks.hpp"
+#include "receiver/protocol/sbf_status_blocks.hpp"
+
+namespace skyloop {
+
+template <class... Message>
+struct SbfBlocks {
+    /// Calls `f.template operator()<Message>()` for one after the other, until one says true; whether one did.
+    template <class F>
+    static bool any(F&& f) {
+        return (f.template operator()<Message>() || ...);
+    }
+};
+
+using KnownSbfBlocks =
+    SbfBlocks<SbfMeasEpoch, SbfMeasExtra, SbfEndOfMeas, SbfGpsRawCa, SbfGloRawCa, SbfGalRawInav, SbfBdsRaw,
+              SbfQzsRawL1Ca, SbfGpsNav, SbfGloNav, SbfGalNav, SbfBdsNav, SbfQzsNav, SbfPvtCartesian, SbfPvtGeodetic,
+              SbfPosCovCartesian, SbfPosCovGeodetic, SbfVelCovCartesian, SbfVelCovGeodetic, SbfDop, SbfBaseVectorCart,
+              SbfBaseVectorGeod, SbfEndOfPvt, SbfAttEuler, SbfAttCovEuler, SbfAuxAntPositions, SbfEndOfAtt,
+              SbfReceiverTime, SbfChannelStatus, SbfReceiverStatus, SbfSatVisibility, SbfQualityInd, SbfRfStatus,
+              SbfGalAuthStatus, SbfReceiverSetup>;
+
+}  // namespace skyloop

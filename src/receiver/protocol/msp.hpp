@@ -1,0 +1,107 @@
+/// MultiWii Serial Protocol: frames of version 1 and 2 and the two messages by which a receiver feeds an autopilot.
+///
+/// Frames: the INAV project's page "MSP V2" (native version 2, version 1); messages: RECEIVER.md 7, rank 1.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "receiver/protocol/field_list.hpp"
+
+namespace skyloop {
+
+/// One checked frame; the payload lives as long as the bytes that were parsed.
+struct MspFrameView {
+    int version = 2;       ///< 1 ("$M") or 2 ("$X")
+    char direction = '<';  ///< '<' to the autopilot, '>' from it, '!' a refusal
+    std::uint16_t function = 0;
+    ByteSpan payload;
+};
+
+/// Bytes of a version 1 frame before its payload, and of a version 2 frame; one byte of checksum follows it.
+inline constexpr std::size_t msp_v1_head_size = 5, msp_v2_head_size = 8;
+/// The longest payload of version 1: a length of 255 announces a longer form, which is not read here.
+inline constexpr std::size_t msp_v1_largest_payload = 254;
+
+/// CRC-8/DVB-S2: polynomial 0xD5, start 0 (ETSI EN 302 307-1, 5.1.6).
+std::uint8_t crc8_dvb_s2(ByteSpan bytes);
+
+/// A version 1 frame "$M<", its checksum the exclusive or from the length on. Empty when function or payload do not
+/// fit into their byte.
+Bytes encode_msp_v1(std::uint16_t function, ByteSpan payload);
+/// A version 2 frame "$X<" without flags. Empty for a payload of more than 65535 bytes.
+Bytes encode_msp_v2(std::uint16_t function, ByteSpan payload);
+
+/// Bytes of the frame of either version that begins here, by its length field: nothing when none does or the length is
+/// not there yet.
+std::optional<std::size_t> msp_frame_size(ByteSpan bytes);
+/// Reads exactly one frame; nothing when start, length or checksum do not hold.
+std::optional<MspFrameView> parse_msp(ByteSpan bytes);
+
+/// MSP2_SENSOR_GPS: a receiver's solution, 52 bytes in a version 2 frame.
+struct MspSensorGps {
+    static constexpr std::uint16_t function = 0x1F03;
+    static constexpr std::string_view message_name = "MSP2_SENSOR_GPS";
+    static constexpr std::string_view field_names =
+        "instance gps_week!65535 tow_s*1e-3 fix_type satellites h_acc_m*1e-2!65535 v_acc_m*1e-2!65535 "
+        "speed_acc_mps*1e-2!65535 dop*1e-2 lon_deg*1e-7 lat_deg*1e-7 msl_m*1e-2 vel_north_mps*1e-2 "
+        "vel_east_mps*1e-2 vel_down_mps*1e-2 course_deg*1e-2 yaw_deg*1e-2!65535 year month day hour minute second";
+    std::uint8_t instance = 0;
+    std::uint16_t gps_week = 0xFFFF;  ///< not wrapped; 65535 unknown
+    std::uint32_t ms_tow = 0;         ///< ms
+    std::uint8_t fix_type =
+        0;  ///< 0 no receiver or no fix, 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed
+    std::uint8_t satellites = 0;       ///< used
+    std::uint16_t h_acc = 0xFFFF;      ///< cm
+    std::uint16_t v_acc = 0xFFFF;      ///< cm
+    std::uint16_t speed_acc = 0xFFFF;  ///< cm/s
+    std::uint16_t dop = 9999;          ///< 0.01; ArduPilot takes it for HDOP
+    std::int32_t longitude = 0;        ///< 1e-7 deg
+    std::int32_t latitude = 0;         ///< 1e-7 deg
+    std::int32_t msl_altitude = 0;     ///< cm
+    std::int32_t vel_north = 0;        ///< cm/s
+    std::int32_t vel_east = 0;         ///< cm/s
+    std::int32_t vel_down = 0;         ///< cm/s
+    std::uint16_t course = 0;          ///< 0.01 deg
+    std::uint16_t true_yaw = 0xFFFF;   ///< 0.01 deg; 65535 none
+    std::uint16_t year = 0;            ///< UTC
+    std::uint8_t month = 0;
+    std::uint8_t day = 0;
+    std::uint8_t hour = 0;
+    std::uint8_t minute = 0;
+    std::uint8_t second = 0;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.instance, m.gps_week, m.ms_tow, m.fix_type, m.satellites, m.h_acc, m.v_acc, m.speed_acc, m.dop, m.longitude,
+          m.latitude, m.msl_altitude, m.vel_north, m.vel_east, m.vel_down, m.course, m.true_yaw, m.year, m.month, m.day,
+          m.hour, m.minute, m.second);
+    }
+};
+
+/// MSP_SET_RAW_GPS: the older, short form, 14 bytes in a version 1 frame.
+struct MspSetRawGps {
+    static constexpr std::uint16_t function = 201;
+    static constexpr std::string_view message_name = "MSP_SET_RAW_GPS";
+    static constexpr std::string_view field_names =
+        "fix satellites lat_deg*1e-7 lon_deg*1e-7 altitude_m speed_mps*1e-2";
+    std::uint8_t fix = 0;  ///< 0 none, 1 there is one
+    std::uint8_t satellites = 0;
+    std::int32_t latitude = 0;   ///< 1e-7 deg
+    std::int32_t longitude = 0;  ///< 1e-7 deg
+    std::uint16_t altitude = 0;  ///< m above mean sea level, none below it
+    std::uint16_t speed = 0;     ///< cm/s
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.fix, m.satellites, m.latitude, m.longitude, m.altitude, m.speed);
+    }
+};
+
+/// The frames of the two messages.
+inline Bytes encode_msp(const MspSensorGps& m) { return encode_msp_v2(MspSensorGps::function, encode_payload(m)); }
+inline Bytes encode_msp(const MspSetRawGps& m) { return encode_msp_v1(MspSetRawGps::function, encode_payload(m)); }
+
+}  // namespace skyloop

@@ -1,0 +1,210 @@
+#include "receiver/protocol/nmea_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "detail/nmea_encoding.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+
+namespace skyloop {
+namespace {
+
+using namespace nmea_encoding;
+
+constexpr std::size_t gsa_slots = 12;
+constexpr std::size_t gsv_slots = 4;
+constexpr std::size_t gsv_most_pages = 9;
+// Since version 2.3 (RECEIVER.md 5.2).
+void add_mode(Sentence& sentence, const std::optional<NmeaMode>& mode, const NmeaFormat& format) {
+    if (since_2_3(format)) sentence.text(mode ? std::string(1, static_cast<char>(*mode)) : std::string());
+}
+
+void add_deviation(Sentence& sentence, const std::optional<Metres>& deviation, const NmeaFormat& format) {
+    if (!deviation)
+        sentence.empty();
+    else
+        sentence.text(format.deviations_padded ? fmt::format("{:05.1f}", deviation->value())
+                                               : deviation_text(*deviation));
+}
+
+void add_clamped(Sentence& sentence, const std::optional<int>& value, int last, int digits) {
+    if (!value)
+        sentence.empty();
+    else
+        sentence.number(std::clamp(*value, 0, last), digits);
+}
+
+std::string gga_text(const Gga& m, const NmeaFormat& format, int coordinate_decimals) {
+    Sentence s(m.talker + "GGA");
+    add_time(s, m.time, format);
+    add_position(s, m.position, coordinate_decimals);
+    s.number(m.quality).number(std::clamp(m.satellites_used, 0, 99), format.satellites_padded ? 2 : 1);
+    add_dop(s, m.hdop, format.dop_decimals);
+    for (const auto& height : {m.altitude, m.geoid_separation}) {
+        if (height && std::isfinite(height->value()))
+            s.decimal(height->value(), format.altitude_decimals).letter('M');
+        else if (format.units_always)
+            s.empty().letter('M');
+        else
+            s.empty(2);
+    }
+    add_decimal(s, m.correction_age ? std::optional(m.correction_age->value()) : std::nullopt, 1);
+    add_station(s, m.correction_station, format.no_station);
+    return s.finish();
+}
+
+// Characters that would end or split a sentence, as ^hh (NMEA 0183, 5.1.3).
+std::string escaped(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        const bool plain = c >= 0x20 && c <= 0x7e && std::string_view("$*,!\\^~").find(c) == std::string_view::npos;
+        out += plain ? std::string(1, c) : fmt::format("^{:02X}", static_cast<unsigned char>(c));
+    }
+    return out;
+}
+
+}  // namespace
+
+UtcTime rounded_utc(GpsTime time, int decimals, const LeapSeconds& leap_seconds) {
+    const std::int64_t step = 1'000'000'000 / power_of_ten(decimals);
+    const std::int64_t count = time.time_since_epoch().count() + step / 2;
+    const std::int64_t below = ((count % step) + step) % step;
+    return to_utc(GpsTime(Nanoseconds(count - below)), leap_seconds);
+}
+
+NmeaTime nmea_time(const UtcTime& utc) { return {utc.hour, utc.minute, utc.second, utc.nanosecond}; }
+NmeaDate nmea_date(const UtcTime& utc) { return {utc.year, utc.month, utc.day}; }
+
+std::vector<Gsv> gsv_pages(const std::string& talker, const std::vector<GsvSatellite>& satellites,
+                           std::optional<int> signal_id) {
+    const std::size_t shown = std::min(satellites.size(), gsv_slots * gsv_most_pages);
+    const std::size_t count = std::max<std::size_t>(1, (shown + gsv_slots - 1) / gsv_slots);
+    std::vector<Gsv> pages;
+    for (std::size_t page = 0; page < count; ++page) {
+        const auto first = satellites.begin() + static_cast<std::ptrdiff_t>(page * gsv_slots);
+        const auto last = satellites.begin() + static_cast<std::ptrdiff_t>(std::min(shown, (page + 1) * gsv_slots));
+        pages.push_back({talker,
+                         static_cast<int>(count),
+                         static_cast<int>(page + 1),
+                         static_cast<int>(shown),
+                         {first, last},
+                         signal_id});
+    }
+    return pages;
+}
+
+std::string encode(const Rmc& m, const NmeaFormat& format) {
+    Sentence s(m.talker + "RMC");
+    add_time(s, m.time, format);
+    s.letter(m.valid ? 'A' : 'V');
+    add_position(s, m.position, format.coordinate_decimals);
+    add_decimal(s, m.speed ? std::optional(in_knots(*m.speed)) : std::nullopt, format.speed_decimals);
+    s.text(m.course ? course_text(*m.course, format.course_decimals) : "").text(m.date ? date_text(*m.date) : "");
+    s.empty(2);  // no magnetic variation
+    add_mode(s, m.mode, format);
+    if (since_4_10(format)) s.letter('V');
+    return s.finish();
+}
+
+std::string encode(const Vtg& m, const NmeaFormat& format) {
+    Sentence s(m.talker + "VTG");
+    if (!m.speed) {
+        s.empty(8);
+    } else {
+        s.text(m.course ? course_text(*m.course, format.course_decimals) : "").letter('T').empty().letter('M');
+        s.decimal(in_knots(*m.speed), format.speed_decimals).letter('N');
+        s.decimal(in_kmh(*m.speed), format.speed_decimals).letter('K');
+    }
+    add_mode(s, m.mode, format);
+    return s.finish();
+}
+
+std::string encode(const Gga& m, const NmeaFormat& format) {
+    return within_limit(format, format.coordinate_decimals,
+                        [&](int decimals) { return gga_text(m, format, decimals); });
+}
+
+std::string encode(const Gsa& m, const NmeaFormat& format) {
+    Sentence s(m.talker + "GSA");
+    s.letter(m.automatic ? 'A' : 'M').number(m.fix_mode);
+    const std::size_t shown = std::min(m.satellites.size(), gsa_slots);
+    for (std::size_t i = 0; i < shown; ++i)
+        s.number(m.satellites[i], 2);
+    s.empty(static_cast<int>(gsa_slots - shown));
+    for (const auto& dop : {m.pdop, m.hdop, m.vdop})
+        add_dop(s, dop, format.dop_decimals);
+    if (since_4_10(format)) s.text(m.system_id ? hex_text(*m.system_id) : "");
+    return s.finish();
+}
+
+std::string encode(const Gsv& m, const NmeaFormat& format) {
+    Sentence s(m.talker + "GSV");
+    s.number(m.pages).number(m.page).number(m.satellites_in_view, 2);
+    for (std::size_t i = 0; i < std::min(m.satellites.size(), gsv_slots); ++i) {
+        const GsvSatellite& satellite = m.satellites[i];
+        satellite.number ? s.number(*satellite.number, 2) : s.empty(1);
+        add_clamped(s, satellite.elevation_deg, 90, 2);
+        add_clamped(s, satellite.azimuth_deg ? std::optional(*satellite.azimuth_deg % 360) : std::nullopt, 359, 3);
+        add_clamped(s, satellite.cn0_dbhz, 99, 2);
+    }
+    if (since_4_10(format)) s.text(m.signal_id ? hex_text(*m.signal_id) : "");
+    return s.finish();
+}
+
+std::string encode(const Gll& m, const NmeaFormat& format) {
+    Sentence s(m.talker + "GLL");
+    add_position(s, m.position, format.coordinate_decimals);
+    add_time(s, m.time, format);
+    s.letter(m.valid ? 'A' : 'V');
+    add_mode(s, m.mode, format);
+    return s.finish();
+}
+
+std::string encode(const Gst& m, const NmeaFormat& format) {
+    Sentence s(m.talker + "GST");
+    add_time(s, m.time, format);
+    add_deviation(s, m.range_rms, format);
+    add_deviation(s, m.semi_major, format);
+    add_deviation(s, m.semi_minor, format);
+    if (format.deviations_padded && m.orientation)
+        s.text(fmt::format("{:05.1f}", m.orientation->deg()));
+    else
+        s.text(m.orientation ? course_text(*m.orientation, 0) : "");
+    add_deviation(s, m.latitude, format);
+    add_deviation(s, m.longitude, format);
+    if (format.deviations_padded && m.altitude)
+        s.text(fmt::format("{:05.0f}", m.altitude->value()));
+    else
+        add_deviation(s, m.altitude, format);
+    return s.finish();
+}
+
+std::string encode(const Zda& m, const NmeaFormat& format) {
+    Sentence s(m.talker + "ZDA");
+    add_time(s, m.time, format);
+    if (m.date)
+        s.text(fmt::format("{:02}", m.date->day))
+            .text(fmt::format("{:02}", m.date->month))
+            .text(fmt::format("{:04}", m.date->year));
+    else
+        s.empty(3);
+    return s.text("00").text("00").finish();
+}
+
+std::string encode(const Txt& m, const NmeaFormat&) {
+    return Sentence(m.talker + "TXT")
+        .number(m.count, 2)
+        .number(m.index, 2)
+        .number(m.type, 2)
+        .text(escaped(m.text))
+        .finish();
+}
+
+std::string encode(const NmeaMessage& message, const NmeaFormat& format) {
+    return std::visit([&](const auto& m) { return encode(m, format); }, message);
+}
+
+}  // namespace skyloop

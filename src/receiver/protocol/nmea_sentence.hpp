@@ -1,0 +1,79 @@
+/// NMEA 0183 sentences as text: building, checking and finding them in a stream.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/bytes.hpp"
+#include "base/core/result.hpp"
+
+namespace skyloop {
+
+/// The exclusive or of the characters between `$` and `*` (NMEA 0183, 5.3).
+std::uint8_t nmea_checksum(std::string_view body);
+
+/// `value` with exactly `decimals` digits after the point, correctly rounded; never "-0.00". Empty when not finite.
+std::string fixed_decimals(double value, int decimals);
+
+/// Builds one sentence field by field.
+class Sentence {
+public:
+    /// @param address talker and formatter, "GNGGA"
+    explicit Sentence(std::string_view address) : body_(address) {}
+
+    Sentence& text(std::string_view field);
+    Sentence& letter(char field) { return text({&field, 1}); }
+    /// Padded with zeros to at least `digits`.
+    Sentence& number(int value, int digits = 1);
+    Sentence& decimal(double value, int decimals) { return text(fixed_decimals(value, decimals)); }
+    /// `count` fields without content.
+    Sentence& empty(int count = 1);
+    /// "$…*hh\r\n", the checksum in upper case.
+    [[nodiscard]] std::string finish() const;
+
+private:
+    std::string body_;
+};
+
+/// One checked sentence; its views live as long as the line that was parsed.
+struct SentenceView {
+    std::string_view address;  ///< "GNGGA", "PUBX"
+    std::vector<std::string_view> fields;
+    /// "GN"; "P" for proprietary sentences.
+    [[nodiscard]] std::string_view talker() const;
+    /// "GGA"; what follows the P of proprietary sentences.
+    [[nodiscard]] std::string_view formatter() const;
+    /// A field, empty where the sentence has fewer.
+    [[nodiscard]] std::string_view field(std::size_t index) const;
+};
+
+/// Reads one line, with or without its line end; before that may stand the blanks with which loggers fill up lines.
+/// Fails with `input` when it does not start with `$` or `!`, has a character that is not printable, no checksum or a
+/// wrong one (either letter case is accepted).
+Result<SentenceView> parse_sentence(std::string_view line);
+
+/// Finds sentences in a byte stream with whatever else it carries (RECEIVER.md 1.4).
+///
+/// A line runs from `$` or `!` to LF, before which carriage returns may stand. A line that grows beyond 256 characters
+/// or meets a byte that is not printable is dropped, and the search goes on at that byte; a `$` starts a line anew.
+/// State: the line so far.
+class SentenceSplitter {
+public:
+    /// The lines that `bytes` completes, without line ends, checksums not yet verified.
+    std::vector<std::string> feed(ByteSpan bytes);
+    /// Lines begun and thrown away.
+    [[nodiscard]] std::size_t dropped() const { return dropped_; }
+
+private:
+    void take(char c, std::vector<std::string>& lines);
+    void drop();
+
+    std::string line_;
+    bool carriage_return_ = false;
+    std::size_t dropped_ = 0;
+};
+
+}  // namespace skyloop

@@ -1,0 +1,195 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+
+#include "base/core/bit_field.hpp"
+#include "receiver/protocol/message_listing.hpp"
+
+namespace skyloop {
+namespace {
+
+// A text with its length in the byte before (RTCM 10403.3, DF029 and its like).
+std::string counted_text(BitReader& reader) {
+    std::string characters;
+    for (std::uint64_t left = reader.get(8); left > 0 && reader.ok(); --left)
+        characters += static_cast<char>(reader.get(8));
+    return characters;
+}
+
+class RtcmLister {
+public:
+    explicit RtcmLister(ByteSpan payload) : reader_(payload) {}
+
+    std::uint64_t number(std::string_view name, unsigned bits) {
+        const std::uint64_t value = reader_.get(static_cast<int>(bits));
+        fields_.push_back({std::string(name), {value}});
+        return value;
+    }
+    void scaled(std::string_view names, unsigned bits, bool is_signed) {
+        const FieldName name = next_field_name(names);
+        fields_.push_back({std::string(name.name), is_signed
+                                                       ? scaled_value(reader_.get_signed(static_cast<int>(bits)), name)
+                                                       : scaled_value(reader_.get(static_cast<int>(bits)), name)});
+    }
+    void text(std::string_view name) { fields_.push_back({std::string(name), {counted_text(reader_)}}); }
+    /// The numbers of the bits that are set, the first being 1.
+    void mask(std::string_view name, unsigned bits) {
+        std::vector<DecodedValue> set;
+        for (unsigned i = 1; i <= bits; ++i)
+            if (reader_.get(1) != 0) set.push_back({std::uint64_t{i}});
+        fields_.push_back({std::string(name), {std::move(set)}});
+    }
+    void skip(unsigned bits) { reader_.skip(bits); }
+    [[nodiscard]] bool complete() const { return reader_.ok(); }
+    std::vector<DecodedField> take() { return std::move(fields_); }
+
+private:
+    BitReader reader_;
+    std::vector<DecodedField> fields_;
+};
+
+constexpr std::array<std::string_view, 7> msm_systems{"GPS", "GLONASS", "Galileo", "SBAS", "QZSS", "BeiDou", "NavIC"};
+
+// MSM1 … MSM7 of seven systems: 1071 … 1137 (RTCM 10403.3, table 3.5-78).
+bool is_msm(unsigned number) { return number >= 1071 && number <= 1137 && number % 10 >= 1 && number % 10 <= 7; }
+
+bool is_gps_observables(unsigned number) { return number >= 1001 && number <= 1004; }
+bool is_glonass_observables(unsigned number) { return number >= 1009 && number <= 1012; }
+
+// On L1, extended with ambiguity and C/N0 or not, then on both carriers.
+std::string observables_name(unsigned number) {
+    const unsigned form = number - (is_gps_observables(number) ? 1001 : 1009);
+    return fmt::format("{} L1{} observables{}", is_gps_observables(number) ? "GPS" : "GLONASS",
+                       form >= 2 ? " and L2" : "", form % 2 == 0 ? ", basic" : "");
+}
+
+std::string rtcm3_name(unsigned number) {
+    if (is_gps_observables(number) || is_glonass_observables(number)) return observables_name(number);
+    if (is_msm(number)) return fmt::format("{} MSM{}", msm_systems[(number - 1071) / 10], number % 10);
+    switch (number) {
+        case 1005:
+            return "station position";
+        case 1006:
+            return "station position and antenna height";
+        case 1007:
+        case 1008:
+            return "antenna";
+        case 1019:
+            return "GPS ephemeris";
+        case 1020:
+            return "GLONASS ephemeris";
+        case 1033:
+            return "receiver and antenna";
+        case 1042:
+            return "BeiDou ephemeris";
+        case 1044:
+            return "QZSS ephemeris";
+        case 1045:
+            return "Galileo F/NAV ephemeris";
+        case 1046:
+            return "Galileo I/NAV ephemeris";
+        case 1230:
+            return "GLONASS code-phase biases";
+        case 4072:
+            return "u-blox reference station";
+        default:
+            return {};
+    }
+}
+
+// GPS, Galileo, QZSS and BeiDou count milliseconds of a week, GLONASS a day and milliseconds of it (DF034, DF416).
+void list_msm(unsigned number, RtcmLister& to) {
+    to.number("station", 12);
+    if ((number - 1071) / 10 == 1) {
+        to.number("day_of_week", 3);
+        to.scaled("time_of_day_s*1e-3", 27, false);
+    } else {
+        to.scaled("tow_s*1e-3", 30, false);
+    }
+    to.number("more_follow", 1);
+    to.number("issue", 3);
+    to.skip(7);
+    to.number("clock_steering", 2);
+    to.number("external_clock", 2);
+    to.number("smoothing", 1);
+    to.number("smoothing_interval", 3);
+    to.mask("satellites", 64);
+    to.mask("signals", 32);
+}
+
+void list_station(unsigned number, RtcmLister& to) {
+    to.number("station", 12);
+    to.number("itrf_year", 6);
+    to.skip(4);
+    to.scaled("ecef_x_m*1e-4", 38, true);
+    to.skip(2);
+    to.scaled("ecef_y_m*1e-4", 38, true);
+    to.skip(2);
+    to.scaled("ecef_z_m*1e-4", 38, true);
+    if (number == 1006) to.scaled("antenna_height_m*1e-4", 16, false);
+}
+
+void list_descriptors(unsigned number, RtcmLister& to) {
+    to.number("station", 12);
+    to.text("antenna");
+    to.number("antenna_setup", 8);
+    if (number == 1008 || number == 1033) to.text("antenna_serial");
+    if (number != 1033) return;
+    to.text("receiver");
+    to.text("firmware");
+    to.text("receiver_serial");
+}
+
+// Legacy observables: the head alone (RTCM 10403.3, tables 3.5-1 and 3.5-9).
+void list_observables(unsigned number, RtcmLister& to) {
+    to.number("station", 12);
+    if (is_gps_observables(number))
+        to.scaled("tow_s*1e-3", 30, false);
+    else
+        to.scaled("time_of_day_s*1e-3", 27, false);
+    to.number("more_follow", 1);
+    to.number("satellites", 5);
+}
+
+bool list_known(unsigned number, RtcmLister& to) {
+    if (is_msm(number)) {
+        list_msm(number, to);
+    } else if (number == 1005 || number == 1006) {
+        list_station(number, to);
+    } else if (number == 1007 || number == 1008 || number == 1033) {
+        list_descriptors(number, to);
+    } else if (is_gps_observables(number) || is_glonass_observables(number)) {
+        list_observables(number, to);
+    } else if (number == 1019 || number == 1020 || (number >= 1042 && number <= 1046 && number != 1043)) {
+        to.number("satellite", number == 1044 ? 4 : 6);
+    } else if (number == 1230) {
+        to.number("station", 12);
+    } else if (number == 4072) {
+        to.number("subtype", 12);
+    } else {
+        return false;
+    }
+    return to.complete();
+}
+
+}  // namespace
+
+void list_rtcm3(ByteSpan payload, DecodedMessage& message) {
+    if (payload.size() < 2) {
+        message.id = "none";
+        message.payload.assign(payload.begin(), payload.end());
+        return;
+    }
+    RtcmLister lister(payload);
+    const auto number = static_cast<unsigned>(payload[0] << 4 | payload[1] >> 4);
+    lister.skip(12);
+    message.id = fmt::format("{}", number);
+    message.name = rtcm3_name(number);
+    if (list_known(number, lister))
+        message.fields = lister.take();
+    else
+        message.payload.assign(payload.begin(), payload.end());
+}
+
+}  // namespace skyloop

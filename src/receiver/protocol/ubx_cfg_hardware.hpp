@@ -1,0 +1,173 @@
+/// UBX messages of class CFG about the receiver's hardware: TP5, ITFM, PMS, RXM, ANT, LOGFILTER; and UPD-SOS.
+///
+/// Numbers are as on the wire; a member's comment gives unit and scale. Layouts: u-blox M8 interface description
+/// (UBX-13003221), sections 32.11 and 32.20.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "receiver/protocol/ubx_fields.hpp"
+
+namespace skyloop {
+
+/// CFG-TP5: a time pulse.
+struct CfgTp5 {
+    static constexpr UbxMessageId message_id{0x06, 0x31};
+    std::uint8_t tp_idx = 0;
+    std::uint8_t version = 0;  ///< 1; 0 in the first firmware of M8
+    std::array<std::uint8_t, 2> reserved0{};
+    std::int16_t ant_cable_delay = 0;        ///< ns
+    std::int16_t rf_group_delay = 0;         ///< ns
+    std::uint32_t freq_period = 0;           ///< Hz or µs, while time is not known
+    std::uint32_t freq_period_lock = 0;      ///< Hz or µs, once it is
+    std::uint32_t pulse_len_ratio = 0;       ///< µs or 2^-32
+    std::uint32_t pulse_len_ratio_lock = 0;  ///< µs or 2^-32
+    std::int32_t user_config_delay = 0;      ///< ns
+    std::uint32_t flags = 0;  ///< bits: 0 active, 1 lock, 2 other set when locked, 3 isFreq, 4 isLength, 5 align, 6
+                              ///< rising, 7-10 time grid, 11-13 sync mode
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.tp_idx, m.version, m.reserved0, m.ant_cable_delay, m.rf_group_delay, m.freq_period, m.freq_period_lock,
+          m.pulse_len_ratio, m.pulse_len_ratio_lock, m.user_config_delay, m.flags);
+    }
+};
+
+/// CFG-ITFM: the monitor of jamming.
+struct CfgItfm {
+    static constexpr UbxMessageId message_id{0x06, 0x39};
+    std::uint32_t config = 0;  ///< bits: 0-3 broadband threshold dB, 4-8 tone threshold dB, 9-30 fixed, 31 enabled
+    std::uint32_t config2 =
+        0;  ///< bits: 0-11 fixed, 12-13 antenna (0 unknown, 1 passive, 2 active), 14 auxiliary bands
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.config, m.config2);
+    }
+};
+
+/// CFG-PMS: power modes for simple needs.
+struct CfgPms {
+    static constexpr UbxMessageId message_id{0x06, 0x86};
+    std::uint8_t version = 0;            ///< 0
+    std::uint8_t power_setup_value = 0;  ///< 0 full, 1 balanced, 2 interval, 3 … 5 aggressive at 1, 2, 4 Hz, 255 none
+    std::uint16_t period = 0;            ///< s, of interval
+    std::uint16_t on_time = 0;           ///< s, of interval
+    std::array<std::uint8_t, 2> reserved0{};
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.power_setup_value, m.period, m.on_time, m.reserved0);
+    }
+};
+
+/// CFG-RXM: power save on and off.
+struct CfgRxm {
+    static constexpr UbxMessageId message_id{0x06, 0x11};
+    std::uint8_t reserved0 = 8;
+    std::uint8_t lp_mode = 0;  ///< 0 and 4 continuous, 1 power save
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.reserved0, m.lp_mode);
+    }
+};
+
+/// CFG-ANT: the supply of the antenna.
+struct CfgAnt {
+    static constexpr UbxMessageId message_id{0x06, 0x13};
+    std::uint16_t flags = 0;  ///< bits: 0 supply, 1 short detection, 2 open detection, 3 off when short, 4 recovers
+    std::uint16_t pins = 0;   ///< bits: 0-4 switch, 5-9 short, 10-14 open, 15 take the pins
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.flags, m.pins);
+    }
+};
+
+/// CFG-LOGFILTER: which positions are logged.
+struct CfgLogfilter {
+    static constexpr UbxMessageId message_id{0x06, 0x47};
+    std::uint8_t version = 1;              ///< 1
+    std::uint8_t flags = 0;                ///< bits: 0 logging, 1 once per wake-up, 2 all filters must hold
+    std::uint16_t min_interval = 0;        ///< s
+    std::uint16_t time_threshold = 0;      ///< s
+    std::uint16_t speed_threshold = 0;     ///< m/s
+    std::uint32_t position_threshold = 0;  ///< m
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.flags, m.min_interval, m.time_threshold, m.speed_threshold, m.position_threshold);
+    }
+};
+
+/// CFG-PM2: how power is saved (protocol versions 18 to 22).
+struct CfgPm2 {
+    static constexpr UbxMessageId message_id{0x06, 0x3B};
+    std::uint8_t version = 2;  ///< 2
+    std::uint8_t reserved0 = 0;
+    std::uint8_t max_startup_state_dur = 0;  ///< s
+    std::uint8_t reserved1 = 0;
+    /// Bits: 4 EXTINT1, 5 wake, 6 backup, 7 inactivity, 8 peak current, 10 time fix, 12 ephemerides, 16 never off, 17
+    /// cyclic
+    std::uint32_t flags = 0;
+    std::uint32_t update_period = 0;  ///< ms
+    std::uint32_t search_period = 0;  ///< ms
+    std::uint32_t grid_offset = 0;    ///< ms
+    std::uint16_t on_time = 0;        ///< s
+    std::uint16_t min_acq_time = 0;   ///< s
+    std::array<std::uint8_t, 20> reserved2{};
+    std::uint32_t extint_inactivity = 0;  ///< ms
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.reserved0, m.max_startup_state_dur, m.reserved1, m.flags, m.update_period, m.search_period,
+          m.grid_offset, m.on_time, m.min_acq_time, m.reserved2, m.extint_inactivity);
+    }
+};
+
+/// CFG-PWR: the state that the receiver is to be in (F9 interface description, HPG 1.10).
+struct CfgPwr {
+    static constexpr UbxMessageId message_id{0x06, 0x57};
+    std::uint8_t version = 1;  ///< 1
+    std::array<std::uint8_t, 3> reserved0{};
+    std::uint32_t state = 0;  ///< of PowerStateWord
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version, m.reserved0, m.state);
+    }
+};
+
+/// The states of CFG-PWR: four letters each.
+enum PowerStateWord : std::uint32_t { power_run = 0x52554E20, power_stop = 0x53544F50, power_backup = 0x42434B50 };
+
+/// UPD-SOS, a command: battery-backed memory to flash.
+struct UpdSos {
+    static constexpr UbxMessageId message_id{0x09, 0x14};
+    std::uint8_t cmd = 0;  ///< 0 create a backup, 1 clear it
+    std::array<std::uint8_t, 3> reserved0{};
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.cmd, m.reserved0);
+    }
+};
+
+/// UPD-SOS, an answer.
+struct UpdSosStatus {
+    static constexpr UbxMessageId message_id{0x09, 0x14};
+    std::uint8_t cmd = 0;  ///< 2 a backup was created or not, 3 what was restored at the start
+    std::array<std::uint8_t, 3> reserved0{};
+    std::uint8_t response = 0;  ///< of cmd 2: 0 no, 1 yes; of cmd 3: 0 unknown, 1 failed, 2 restored, 3 no backup
+    std::array<std::uint8_t, 3> reserved1{};
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.cmd, m.reserved0, m.response, m.reserved1);
+    }
+};
+
+}  // namespace skyloop

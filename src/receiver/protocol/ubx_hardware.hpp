@@ -1,0 +1,175 @@
+/// UBX messages of the front end: MON-HW, MON-HW2, MON-HW3, MON-RF and MON-SPAN.
+///
+/// Numbers are as on the wire; a member's comment gives unit and scale. Each message names where its layout stands: a
+/// section of RECEIVER.md, or the message of that name in the M8 (UBX-13003221), F9 (HPG 1.32, UBX-22008968) or M10
+/// (SPG 5.10) interface description.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "receiver/protocol/ubx_fields.hpp"
+
+namespace skyloop {
+
+/// MON-HW: pins, gain, antenna and jamming (RECEIVER.md 3.2). Pins that VP lists: 17 on u-blox 7 and later, 25
+/// before; the 56 bytes of later receivers stand in no document, and are taken as 13.
+template <std::size_t Pins>
+struct MonHwPins {
+    static constexpr UbxMessageId message_id{0x0A, 0x09};
+    std::uint32_t pin_sel = 0;
+    std::uint32_t pin_bank = 0;
+    std::uint32_t pin_dir = 0;
+    std::uint32_t pin_val = 0;
+    std::uint16_t noise_per_ms = 0;
+    std::uint16_t agc_cnt = 0;  ///< 0 to 8191
+    std::uint8_t a_status = 0;  ///< 0 initialising, 1 unknown, 2 ok, 3 short circuit, 4 open
+    std::uint8_t a_power = 0;   ///< 0 off, 1 on, 2 unknown
+    std::uint8_t flags = 0;     ///< bits: 0 clock calibrated, 1 safe boot, 2-3 jamming state, 4 no crystal
+    std::uint8_t reserved0 = 0;
+    std::uint32_t used_mask = 0;
+    std::array<std::uint8_t, Pins> vp{};
+    std::uint8_t jam_ind = 0;  ///< 0 to 255
+    std::array<std::uint8_t, 2> reserved1{};
+    std::uint32_t pin_irq = 0;
+    std::uint32_t pull_h = 0;
+    std::uint32_t pull_l = 0;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.pin_sel, m.pin_bank, m.pin_dir, m.pin_val, m.noise_per_ms, m.agc_cnt, m.a_status, m.a_power, m.flags,
+          m.reserved0, m.used_mask, m.vp, m.jam_ind, m.reserved1, m.pin_irq, m.pull_h, m.pull_l);
+    }
+};
+
+using MonHw = MonHwPins<17>;
+using MonHwLong = MonHwPins<25>;
+using MonHwShort = MonHwPins<13>;
+
+/// MON-HW2: the front end's measurements (RECEIVER.md 3.2).
+struct MonHw2 {
+    static constexpr UbxMessageId message_id{0x0A, 0x0B};
+    std::int8_t ofs_i = 0;
+    std::uint8_t mag_i = 0;
+    std::int8_t ofs_q = 0;
+    std::uint8_t mag_q = 0;
+    std::uint8_t cfg_source = 0;  ///< 114 ROM, 111 OTP, 112 pins, 102 flash
+    std::array<std::uint8_t, 3> reserved0{};
+    std::uint32_t low_lev_cfg = 0;
+    std::array<std::uint8_t, 8> reserved1{};
+    std::uint32_t post_status = 0;
+    std::array<std::uint8_t, 4> reserved2{};
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.ofs_i, m.mag_i, m.ofs_q, m.mag_q, m.cfg_source, m.reserved0, m.low_lev_cfg, m.reserved1, m.post_status,
+          m.reserved2);
+    }
+};
+
+/// One pin of MON-HW3.
+struct MonHw3Item {
+    std::uint16_t pin_id = 0;
+    std::uint16_t pin_mask =
+        0;  ///< bits: 0 peripheral, 1-3 bank, 4 output, 5 high, 6 virtual, 7 interrupt, 8 pull-up, 9 pull-down
+    std::uint8_t vp = 0;  ///< virtual pin
+    std::uint8_t reserved1 = 0;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.pin_id, m.pin_mask, m.vp, m.reserved1);
+    }
+};
+
+/// MON-HW3: pins (RECEIVER.md 3.2).
+struct MonHw3 {
+    static constexpr UbxMessageId message_id{0x0A, 0x37};
+    std::uint8_t version = 0;  ///< 0
+    std::uint8_t flags = 0;    ///< bits: 0 clock calibrated, 1 safe boot, 2 no crystal
+    std::array<char, 10> hw_version{};
+    std::array<std::uint8_t, 9> reserved0{};
+    std::vector<MonHw3Item> pins;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version);
+        v.count(m.pins);
+        v(m.flags, m.hw_version, m.reserved0);
+        v.items(m.pins);
+    }
+};
+
+/// One front end of MON-RF.
+struct MonRfItem {
+    std::uint8_t block_id = 0;    ///< 0 L1, 1 L2 or L5
+    std::uint8_t flags = 0;       ///< bits 0-1: jamming state
+    std::uint8_t ant_status = 0;  ///< as MonHwPins::a_status
+    std::uint8_t ant_power = 0;   ///< as MonHwPins::a_power
+    std::uint32_t post_status = 0;
+    std::array<std::uint8_t, 4> reserved1{};
+    std::uint16_t noise_per_ms = 0;
+    std::uint16_t agc_cnt = 0;  ///< 0 to 8191
+    std::uint8_t jam_ind = 0;   ///< 0 to 255
+    std::int8_t ofs_i = 0;
+    std::uint8_t mag_i = 0;
+    std::int8_t ofs_q = 0;
+    std::uint8_t mag_q = 0;
+    std::array<std::uint8_t, 3> reserved2{};
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.block_id, m.flags, m.ant_status, m.ant_power, m.post_status, m.reserved1, m.noise_per_ms, m.agc_cnt,
+          m.jam_ind, m.ofs_i, m.mag_i, m.ofs_q, m.mag_q, m.reserved2);
+    }
+};
+
+/// MON-RF: front ends (RECEIVER.md 3.2).
+struct MonRf {
+    static constexpr UbxMessageId message_id{0x0A, 0x38};
+    std::uint8_t version = 0;  ///< 0
+    std::array<std::uint8_t, 2> reserved0{};
+    std::vector<MonRfItem> blocks;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version);
+        v.count(m.blocks);
+        v(m.reserved0);
+        v.items(m.blocks);
+    }
+};
+
+/// One front end of MON-SPAN.
+struct MonSpanItem {
+    std::array<std::uint8_t, 256> spectrum{};  ///< 0.25 dB
+    std::uint32_t span = 0;                    ///< Hz
+    std::uint32_t res = 0;                     ///< Hz
+    std::uint32_t center = 0;                  ///< Hz
+    std::uint8_t pga = 0;                      ///< dB
+    std::array<std::uint8_t, 3> reserved1{};
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.spectrum, m.span, m.res, m.center, m.pga, m.reserved1);
+    }
+};
+
+/// MON-SPAN: spectra (F9 interface description).
+struct MonSpan {
+    static constexpr UbxMessageId message_id{0x0A, 0x31};
+    std::uint8_t version = 0;  ///< 0
+    std::array<std::uint8_t, 2> reserved0{};
+    std::vector<MonSpanItem> blocks;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        v(m.version);
+        v.count(m.blocks);
+        v(m.reserved0);
+        v.items(m.blocks);
+    }
+};
+
+}  // namespace skyloop

@@ -1,0 +1,33 @@
+/// The names of UBX messages, as u-blox's documents and tools write them (RECEIVER.md 2.3 and 3; u-blox M8 and F9
+/// interface descriptions).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "receiver/protocol/ubx_frame.hpp"
+
+namespace skyloop {
+
+/// A message and its name: "NAV-PVT"; of the classes that CFG-MSG numbers the sentences of other protocols by, "GGA"
+/// (F0), "PUBX-00" (F1) and "RTCM-1005" (F5).
+struct UbxMessageName {
+    UbxMessageId id;
+    std::string_view name;
+};
+
+/// All that are known, ascending by id.
+std::span<const UbxMessageName> ubx_message_names();
+
+/// The name of a message, or nothing for one that no document names.
+std::optional<std::string_view> ubx_message_name(UbxMessageId id);
+
+/// The message of a name, written exactly so, or nothing.
+std::optional<UbxMessageId> ubx_message_from_name(std::string_view name);
+
+/// The name; of a message without one class and id in hexadecimal digits, "01-07".
+std::string to_string(UbxMessageId id);
+
+}  // namespace skyloop

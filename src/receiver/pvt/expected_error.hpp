@@ -1,0 +1,55 @@
+/// What a receiver expects its solution to be wrong by.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "receiver/pvt/navigation_parameters.hpp"
+#include "receiver/pvt/single_point.hpp"
+#include "world/flow/error_correlation.hpp"
+
+namespace skyloop {
+
+/// Covariance of a solution.
+struct ExpectedError {
+    Eigen::Matrix3d position = Eigen::Matrix3d::Zero();        ///< ECEF, m²
+    double clock = 0;                                          ///< of the reference clock, m²
+    Eigen::Vector3d position_clock = Eigen::Vector3d::Zero();  ///< of the one with the other, ECEF, m²
+};
+
+/// The formal covariance, which is that of noise by the weights and independent between satellites, and beside it that
+/// of errors which the satellites share: corrections of the ionosphere that are too small everywhere, or on one side of
+/// the sky, and too dry a troposphere (MODELS.md 7.2, 7.3 for their kinds). Shared errors do not average out however
+/// many satellites there are.
+ExpectedError expected_error(const SinglePoint& solution, const AccuracyParameters& parameters);
+
+/// Whether delays are in the pseudoranges that no model of the receiver's own has taken off.
+bool leaves_delays(const NavigationParameters& parameters);
+
+/// The same with those delays, which are of one sign, so that all satellites share them. Of the ionosphere 1 σ is what
+/// `air` tells, or of it `differential.sbas_left` where a service of corrections has taken most of it before it was
+/// measured; the noise of the position is scaled by `differential.sbas_scale` there. Of the troposphere it is what
+/// `air` tells.
+ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
+                                  const SiteCorrections& air);
+
+/// How these errors go together at the place of the solution, and those of its velocity, if it has one.
+ErrorCorrelation error_correlation(const ExpectedError& expected, const std::optional<SinglePointVelocity>& velocity,
+                                   const Geodetic& place);
+
+/// What a receiver tells of its velocity, 1 σ; 20 m/s where the epoch has none.
+MetresPerSecond told_speed_accuracy(const std::optional<SinglePointVelocity>& velocity,
+                                    const AccuracyParameters& parameters);
+
+/// What it tells of its course, 1 σ: the angle that such an error is of the speed, at most half a turn.
+Angle told_course_accuracy(MetresPerSecond speed, MetresPerSecond speed_accuracy);
+
+/// What a receiver tells of its position, 1 σ.
+struct ToldAccuracy {
+    Metres horizontal, vertical;
+};
+/// Of solutions by carrier phases the accuracy of a good sky, the more in a poor one.
+/// @param covariance of the position, east, north, up, m²
+ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,
+                           const DifferentialParameters& parameters);
+
+}  // namespace skyloop

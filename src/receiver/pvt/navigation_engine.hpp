@@ -1,0 +1,49 @@
+/// What a receiver makes of its measurements.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "base/geo/geodetic.hpp"
+#include "base/geo/geoid.hpp"
+#include "base/time/utc_time.hpp"
+#include "receiver/pvt/navigation_parameters.hpp"
+#include "receiver/pvt/transmitter.hpp"
+#include "world/flow/fix.hpp"
+#include "world/flow/observations.hpp"
+#include "world/flow/receiver_settings.hpp"
+#include "world/gnss/navigation_source.hpp"
+
+namespace skyloop {
+
+/// What the receiver has from the satellites and from its maker. All of it outlives the engine.
+struct NavigationKnowledge {
+    const NavigationSource* broadcast = nullptr;  ///< the records that the satellites send
+    const Geoid* geoid = nullptr;                 ///< may be absent
+    LeapSeconds leap_seconds = LeapSeconds::announced();
+    TransmitterSource* transmitters = nullptr;  ///< orbits and clocks in place of those of the records; may be absent
+    /// Where it was when it was last on, which a start knows that is not cold; nothing: it has never been on.
+    std::optional<Position<Ecef>> last_place{};
+};
+
+/// Solves position, velocity and time, watches the residuals, and smooths.
+///
+/// State: the filter, which records have been received, and since when each satellite is tracked.
+class NavigationEngine {
+public:
+    NavigationEngine(const NavigationParameters& parameters, const NavigationKnowledge& knowledge);
+    ~NavigationEngine();
+    NavigationEngine(NavigationEngine&&) noexcept;
+    NavigationEngine& operator=(NavigationEngine&&) noexcept;
+
+    /// The fix of one epoch; epochs come in ascending time.
+    Fix solve(const Observations& observations, const ReceiverSettings& settings);
+    /// Whether the last fix has a velocity that was measured: without Dopplers it is told as 0.
+    [[nodiscard]] bool velocity_known() const;
+
+private:
+    class State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace skyloop

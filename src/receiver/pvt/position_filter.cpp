@@ -1,0 +1,183 @@
+#include "receiver/pvt/position_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace skyloop {
+namespace {
+
+using Eigen::Vector3d;
+
+// How far the filter may lag in a manoeuvre.
+constexpr double tolerated_lag_m = 0.01;
+// Standard deviations of the velocity's noise that are not taken for a manoeuvre.
+constexpr double quiet_deviations = 3;
+// An innovation beyond these is a jump, which is followed at once.
+constexpr double jump_deviations = 6;
+constexpr double jump_floor_m = 5;
+// Epochs farther apart than this do not share a path.
+constexpr double longest_gap_s = 10;
+
+// Weights of the integral over the last interval of the polynomial through the last n velocities, the newest first
+// (Adams and Moulton).
+constexpr std::array<std::array<double, 4>, 3> path_weights{{
+    {1.0 / 2, 1.0 / 2, 0, 0},
+    {5.0 / 12, 8.0 / 12, -1.0 / 12, 0},
+    {9.0 / 24, 19.0 / 24, -5.0 / 24, 1.0 / 24},
+}};
+// Root of the sum of squares of the difference between two rows: what white noise puts into it.
+constexpr double path_noise = 0.2;
+
+// How much longer or shorter single positions are remembered, by what the vehicle may do; ours.
+double memory_factor(DynamicModel model) {
+    switch (model) {
+        case DynamicModel::stationary:
+            return 4;
+        case DynamicModel::airborne_1g:
+            return 0.5;
+        case DynamicModel::airborne_2g:
+            return 0.4;
+        case DynamicModel::airborne_4g:
+            return 0.25;
+        default:
+            return 1;
+    }
+}
+
+}  // namespace
+
+MotionLimits motion_limits(const ReceiverSettings& settings) {
+    const auto limits = [](double height, double horizontal, double vertical) {
+        return MotionLimits{Metres(height), MetresPerSecond(horizontal), MetresPerSecond(vertical)};
+    };
+    constexpr double any = std::numeric_limits<double>::infinity();
+    if (!settings.dynamic_limits) return limits(any, any, any);
+    switch (settings.dynamic_model) {
+        case DynamicModel::portable:
+            return limits(12000, 310, 50);
+        case DynamicModel::stationary:
+            return limits(9000, 10, 6);
+        case DynamicModel::pedestrian:
+            return limits(9000, 30, 20);
+        case DynamicModel::automotive:
+            return limits(6000, 100, 15);
+        case DynamicModel::sea:
+            return limits(500, 25, 5);
+        case DynamicModel::airborne_1g:
+        case DynamicModel::airborne_2g:
+        case DynamicModel::airborne_4g:
+            return limits(settings.airborne_ceiling.value(), any, any);
+    }
+    return limits(12000, 310, 50);
+}
+
+void PositionFilter::reset() { *this = PositionFilter(parameters_); }
+
+void PositionFilter::start(const PositionInput& input) {
+    position_ = input.position.vector();
+    averaged_ = 1;
+    settled_ = false;
+    velocity_count_ = 0;
+}
+
+// The way since the last epoch, and how unsure it is by what the next lower order says of it.
+Vector3d PositionFilter::way(double dt, const PositionInput& input, double& unsure) const {
+    const bool even = std::abs(dt - spacing_) < 1e-3 * dt;
+    const int known = std::min(even ? velocity_count_ : std::min(velocity_count_, 1), 3);
+    const auto integral = [&](int order) {
+        const auto& weights = path_weights[static_cast<std::size_t>(order - 1)];
+        Vector3d sum = weights[0] * input.velocity->vector();
+        for (std::size_t i = 0; i < static_cast<std::size_t>(order); ++i)
+            sum += weights[i + 1] * velocities_[i];
+        return Vector3d(dt * sum);
+    };
+    const Vector3d best = integral(known);
+    // Without a history nothing is known of manoeuvres; the filter is young then and follows anyway.
+    const double spread = known >= 2 ? (best - integral(known - 1)).norm() : 0;
+    unsure = std::max(0.0, spread - quiet_deviations * path_noise * dt * input.velocity_deviation.value());
+    return best;
+}
+
+double PositionFilter::gain(double dt, double unsure, const ReceiverSettings& settings) {
+    const double memory = parameters_.position_memory.value() * memory_factor(settings.dynamic_model);
+    const double steady = memory > 0 ? 1 - std::exp(-dt / memory) : 1;
+    const double young = 1 / (averaged_ + 1);
+    settled_ = young <= 2 * steady;
+    return std::max({steady, young, unsure / (unsure + tolerated_lag_m)});
+}
+
+void PositionFilter::remember(const PositionInput& input, double dt) {
+    if (!input.velocity) {
+        velocity_count_ = 0;
+        return;
+    }
+    const bool even = std::abs(dt - spacing_) < 1e-3 * dt;
+    if (!even) velocity_count_ = std::min(velocity_count_, 1);
+    spacing_ = dt;
+    for (std::size_t i = velocities_.size() - 1; i > 0; --i)
+        velocities_[i] = velocities_[i - 1];
+    velocities_[0] = input.velocity->vector();
+    velocity_count_ = std::min(velocity_count_ + 1, 4);
+}
+
+bool PositionFilter::holds(const PositionInput& input, const ReceiverSettings& settings) {
+    const bool slow = settings.static_hold_below > MetresPerSecond(0) && input.velocity &&
+                      input.velocity->vector().norm() < settings.static_hold_below.value();
+    if (!slow) {
+        held_.reset();
+        return false;
+    }
+    if (held_ && (position_ - *held_).norm() > parameters_.static_hold_radius.value()) held_.reset();
+    // What is held is an average, not the first position that came along.
+    if (!held_ && settled_) held_ = position_;
+    return held_.has_value();
+}
+
+FilteredPosition PositionFilter::update(const PositionInput& input, const ReceiverSettings& settings) {
+    const double dt = time_ ? difference(input.time, *time_).value() : 0;
+    const bool follows =
+        time_ && !interrupted_ && dt > 0 && dt < longest_gap_s && input.velocity && velocity_count_ > 0;
+    if (follows) {
+        double unsure = 0;
+        const Vector3d predicted = position_ + way(dt, input, unsure);
+        const Vector3d innovation = input.position.vector() - predicted;
+        if (innovation.norm() > jump_floor_m + jump_deviations * input.deviation.value()) {
+            start(input);
+        } else {
+            const double share = gain(dt, unsure, settings);
+            position_ = predicted + share * innovation;
+            averaged_ = 1 / share;
+        }
+    } else {
+        start(input);
+    }
+    if (dt != 0 || !time_) remember(input, dt);
+    time_ = input.time;
+    interrupted_ = false;
+
+    FilteredPosition filtered;
+    filtered.held = holds(input, settings);
+    filtered.position = Position<Ecef>(filtered.held ? *held_ : position_);
+    if (input.velocity && !filtered.held) filtered.velocity = *input.velocity;
+    return filtered;
+}
+
+std::optional<FilteredPosition> PositionFilter::coast(GpsTime time) {
+    if (!time_) return std::nullopt;
+    const Seconds gone = difference(time, *time_);
+    interrupted_ = true;
+    if (gone > parameters_.coasting) {
+        held_.reset();
+        return std::nullopt;
+    }
+    FilteredPosition carried;
+    const Vector3d velocity = velocity_count_ > 0 && !held_ ? velocities_[0] : Vector3d::Zero();
+    carried.position = Position<Ecef>(Vector3d((held_ ? *held_ : position_) + gone.value() * velocity));
+    carried.velocity = Velocity<Ecef>(velocity);
+    carried.held = held_.has_value();
+    carried.coasted = gone;
+    return carried;
+}
+
+}  // namespace skyloop

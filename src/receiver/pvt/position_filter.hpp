@@ -1,0 +1,76 @@
+/// The receiver's filter: what it makes of the solutions of single epochs.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+
+#include "base/geo/frames.hpp"
+#include "base/time/gps_time.hpp"
+#include "receiver/pvt/navigation_parameters.hpp"
+#include "world/flow/receiver_settings.hpp"
+
+namespace skyloop {
+
+/// Beyond these a receiver takes its own solution for wrong (u-blox M8 receiver description, table of dynamic
+/// platform models; RECEIVER.md 4.8).
+struct MotionLimits {
+    Metres height;  ///< above mean sea level
+    MetresPerSecond horizontal_speed;
+    MetresPerSecond vertical_speed;
+};
+/// Of the airborne models the ceiling of the settings alone: their speeds are not looked at.
+MotionLimits motion_limits(const ReceiverSettings& settings);
+
+/// What one epoch gives the filter.
+struct PositionInput {
+    GpsTime time;
+    Position<Ecef> position;
+    Metres deviation;                        ///< 1 σ of the position, three-dimensional
+    std::optional<Velocity<Ecef>> velocity;  ///< by Doppler
+    MetresPerSecond velocity_deviation;      ///< 1 σ, three-dimensional
+};
+
+/// What the filter says.
+struct FilteredPosition {
+    Position<Ecef> position;
+    Velocity<Ecef> velocity;
+    bool held = false;   ///< by static hold
+    Seconds coasted{0};  ///< since the last solution
+};
+
+/// A constant-velocity filter with the gain of its steady state: the position is carried along by the Doppler velocity
+/// and drawn to the solutions of single epochs with a memory of position_memory; while it is young it averages all it
+/// has had. The way between two epochs is the integral of the cubic through the last four velocities; what that leaves
+/// out in a turn opens the gain, so that manoeuvres do not lag.
+///
+/// State: the position, the last velocities, how much it has averaged, and what static hold holds.
+class PositionFilter {
+public:
+    explicit PositionFilter(const FilterParameters& parameters) : parameters_(parameters) {}
+    /// Takes a solution in; times ascend.
+    FilteredPosition update(const PositionInput& input, const ReceiverSettings& settings);
+    /// The position carried on without a solution; nothing once that has lasted longer than `coasting`.
+    [[nodiscard]] std::optional<FilteredPosition> coast(GpsTime time);
+    void reset();
+
+private:
+    [[nodiscard]] Eigen::Vector3d way(double dt, const PositionInput& input, double& unsure) const;
+    double gain(double dt, double unsure, const ReceiverSettings& settings);
+    void remember(const PositionInput& input, double dt);
+    void start(const PositionInput& input);
+    bool holds(const PositionInput& input, const ReceiverSettings& settings);
+
+    FilterParameters parameters_;
+    std::optional<GpsTime> time_;
+    Eigen::Vector3d position_ = Eigen::Vector3d::Zero();
+    std::array<Eigen::Vector3d, 4> velocities_{};  // the newest first
+    int velocity_count_ = 0;                       // evenly spaced ones
+    double spacing_ = 0;                           // s
+    double averaged_ = 0;                          // epochs, while young
+    bool settled_ = false;                         // half of the memory has been filled
+    bool interrupted_ = false;
+    std::optional<Eigen::Vector3d> held_;
+};
+
+}  // namespace skyloop

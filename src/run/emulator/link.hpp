@@ -1,0 +1,96 @@
+/// One receiver port joined to one wire.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "base/time/gps_time.hpp"
+#include "wire/transport/line_garbler.hpp"
+#include "wire/transport/transport.hpp"
+
+namespace skyloop {
+
+/// What has crossed one wire.
+struct LinkCounters {
+    std::uint64_t bytes_out = 0;      ///< taken by the wire while a client listened
+    std::uint64_t bytes_unheard = 0;  ///< sent while nobody listened
+    std::uint64_t bytes_lost = 0;     ///< the client did not read in time
+    std::uint64_t bytes_garbled = 0;  ///< sent at another speed than the client's
+    std::uint64_t bytes_in = 0;       ///< heard by the receiver
+};
+
+/// The line speed of a receiver's port, bit/s; nothing for a port that has none, such as USB.
+using PortSpeed = std::optional<std::uint32_t>;
+
+/// When the bytes of a client reach the receiver.
+enum class InputPace {
+    at_once,  ///< when the loop looks: the transport itself has brought them at the speed of the line
+    line      ///< one after the other, at the speed of the client's line
+};
+
+/// Carries bytes between a receiver's port and a Transport, at the speeds that both ends have set.
+///
+/// State: bytes that are on their way to the receiver. A client's bytes follow each other without a gap at the speed
+/// that its line had when they were read, ten bits each; on a port without a speed at 12 Mbit/s, the full speed of USB
+/// 2.0. Of a client that writes without end no more is read ahead than a terminal's driver holds.
+class Link {
+public:
+    Link(std::unique_ptr<Transport> transport, PortSpeed speed, InputPace pace = InputPace::at_once);
+
+    /// Puts on the wire what the receiver has sent. What a slow client does not take is lost, as in an overrun UART.
+    /// @param speed at which the bytes left
+    /// @param at_rest the receiver has nothing more to send: the line goes idle after these bytes
+    void send(ByteSpan bytes, PortSpeed speed, bool at_rest);
+    /// Takes from the wire what the client has written since the last look. To be called before receive().
+    void look(GpsTime now);
+    /// The next of the client's bytes that have arrived by `now`, as a port of this speed hears them: nothing at all
+    /// when there are no more, an empty piece for bytes of which nothing was heard. A port that has a speed is given
+    /// one byte at a time, so that a command in them which changes the speed acts on the very next one.
+    std::optional<Bytes> receive(PortSpeed speed, GpsTime now);
+    /// When receive() has something to do next, if nothing more is written: a byte has arrived, or the line has rested
+    /// for the time of one. Nothing where bytes arrive at once.
+    [[nodiscard]] std::optional<GpsTime> next_arrival(PortSpeed speed) const;
+
+    /// Pulls the plug, or puts it back: without it neither end hears the other.
+    void set_plugged(bool plugged);
+    [[nodiscard]] const Transport& transport() const { return *transport_; }
+    [[nodiscard]] Transport& transport() { return *transport_; }
+    [[nodiscard]] const LinkCounters& counters() const { return counters_; }
+    [[nodiscard]] bool connected() const { return connected_; }
+    /// Nothing will ever cross it again.
+    [[nodiscard]] bool ended() const { return !transport_->failure().empty(); }
+    /// Bytes are on their way to the receiver.
+    [[nodiscard]] bool input_pending() const { return !incoming_.empty(); }
+
+private:
+    struct Piece {
+        Bytes bytes;
+        PortSpeed speed;  ///< of the client's line; nothing: the receiver's own
+        GpsTime read_at;
+        std::size_t taken = 0;
+    };
+    // What the client's UART makes of the bytes at its own speed.
+    Bytes heard_by_client(ByteSpan bytes, std::uint32_t receiver_baud, std::uint32_t client_baud, bool at_rest);
+    void tell_speed(PortSpeed speed);
+    static Nanoseconds byte_time_of(const Piece& piece, PortSpeed port);
+    std::optional<Bytes> rest(GpsTime now);
+    Bytes take_piece(const Piece& piece, PortSpeed speed, std::size_t count);
+
+    std::unique_ptr<Transport> transport_;
+    LineGarbler to_client_;
+    LineGarbler to_receiver_;
+    InputPace pace_;
+    std::deque<Piece> incoming_;
+    std::size_t waiting_ = 0;  // bytes in incoming_
+    GpsTime line_free_{};      // when the client's line has carried all that was heard
+    GpsTime rests_at_{};       // when it has rested after that for the time of a byte
+    bool may_rest_ = false;    // nothing has come since the last look
+    LinkCounters counters_;
+    PortSpeed told_;  // to the wire
+    bool connected_ = false;
+    bool plugged_ = true;
+};
+
+}  // namespace skyloop

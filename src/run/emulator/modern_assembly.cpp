@@ -1,0 +1,59 @@
+#include "detail/modern_assembly.hpp"
+
+#include <algorithm>
+
+#include "detail/load_ionosphere_maps.hpp"
+#include "detail/receiver_assembly.hpp"
+#include "world/propagation/modern_effects.hpp"
+
+namespace skyloop {
+namespace {
+
+std::filesystem::path nequick_folder(const DataFolders& data) {
+    for (const auto& folder : data.folders)
+        if (std::filesystem::exists(folder / "nequick_g")) return folder / "nequick_g";
+    return "nequick_g";
+}
+
+// What a warm start under an open sky takes until the fourth satellite is tracked, about; the collection of its
+// ephemeris takes the rest.
+constexpr Seconds warm_search{3};
+
+}  // namespace
+
+Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
+                                                                          const NavigationSource& navigation,
+                                                                          const WorldData& world) {
+    const ModernSettings settings = effective(scenario.model.modern);
+    ModernContext context;
+    context.run = span_of_tables(scenario, world.start);
+    context.atmosphere = scenario.atmosphere;
+    context.broadcast = navigation.ionosphere();
+    if (settings.navigation.corrections.ionosphere != IonosphereCorrection::none)
+        context.receiver_correction = IonosphereModel::klobuchar;
+    if (settings.navigation.corrections.ionosphere == IonosphereCorrection::broadcast && context.broadcast.galileo)
+        context.galileo_correction = IonosphereModel::ntcm_g;
+    auto maps = load_ionosphere_maps(settings.ionosphere_maps);
+    if (!maps) return fail(maps.error());
+    context.maps = std::move(*maps);
+    context.nequick_folder = nequick_folder(world.data);
+    context.geoid = world.geoid;
+    context.seed = scenario.run.seed;
+    context.gas_losses = world.gas_losses;
+    return modern_effects(settings.propagation, context);
+}
+
+MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup,
+                                     const std::optional<Geodetic>& last_place) {
+    ModernSettings settings = effective(scenario.model.modern);
+    // Satellites broadcast an ionosphere even where the navigation data has lost it or there is none.
+    settings.navigation.corrections.default_ionosphere = true;
+    settings.navigation.ephemeris_collection =
+        settings.ephemeris_collection.value_or(std::max(setup.warm_start - warm_search, Seconds(0)));
+    NavigationKnowledge knowledge{setup.navigation.get(), setup.geoid, LeapSeconds::announced()};
+    if (last_place) knowledge.last_place = to_ecef(*last_place);
+    return {MeasurementEngine(settings.measurement, receiver_seed(scenario.run.seed, setup.receiver)),
+            NavigationEngine(settings.navigation, knowledge)};
+}
+
+}  // namespace skyloop

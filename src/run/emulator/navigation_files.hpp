@@ -1,0 +1,20 @@
+/// The navigation data of a scenario's files, whatever is done with them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/core/result.hpp"
+#include "run/scenario/scenario.hpp"
+#include "world/gnss/navigation_data.hpp"
+
+namespace skyloop {
+
+/// Reads the files of `sky.navigation`, of which there is at least one. load_navigation() adds what a run makes of
+/// them. Fails with `input` for files that hold nothing to use.
+/// @param near resolves the weeks of an almanac
+/// @param warnings what is doubtful about the records is added here
+Result<NavigationData> read_navigation_files(const Scenario& scenario, GpsTime near,
+                                             std::vector<std::string>& warnings);
+
+}  // namespace skyloop

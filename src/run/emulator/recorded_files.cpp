@@ -1,0 +1,96 @@
+#include "detail/recorded_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "base/core/spared_file.hpp"
+#include "base/core/text_file.hpp"
+#include "run/emulator/claimed_folder.hpp"
+
+namespace skyloop {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view once_a_recording[] = {"fixes.csv",      "satellites.csv", "observations.rnx",
+                                                 "navigation.rnx", "commands.jsonl", "verdicts.json",
+                                                 "junit.xml",      "run.json"};
+constexpr std::string_view once_a_port[] = {".out", ".in", ".times", ".in_times"};
+
+}  // namespace
+
+fs::path recording_of(const fs::path& folder, std::size_t receiver) {
+    return receiver == 0 ? folder : folder / fmt::format("receiver{}", receiver);
+}
+
+bool is_recorded_name(std::string_view name) {
+    if (std::find(std::begin(once_a_recording), std::end(once_a_recording), name) != std::end(once_a_recording))
+        return true;
+    if (!name.starts_with("port")) return false;
+    const std::size_t end = std::min(name.find_first_not_of("0123456789", 4), name.size());
+    return end > 4 &&
+           std::find(std::begin(once_a_port), std::end(once_a_port), name.substr(end)) != std::end(once_a_port);
+}
+
+bool holds_recording(const fs::path& folder) {
+    std::error_code absent;
+    if (!fs::exists(folder / "run.json", absent)) return false;
+    const auto text = read_text_file(folder / "run.json");
+    const auto summary = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+    return summary.is_object() && summary.contains("program") && summary["program"] == "skyloop";
+}
+
+void remove_recordings_from(const fs::path& folder, std::size_t receiver) {
+    std::error_code reason;
+    for (; fs::is_directory(recording_of(folder, receiver), reason); ++receiver) {
+        const auto claimed = ClaimedFolder::claim(recording_of(folder, receiver));
+        if (!claimed) continue;  // another run records there
+        std::vector<fs::path> files;
+        for (const fs::directory_entry& there : fs::directory_iterator(claimed->path(), reason))
+            if (is_recorded_name(there.path().filename().string())) files.push_back(there.path());
+        for (const fs::path& file : files)
+            fs::remove(file, reason);
+        fs::remove(claimed->path(), reason);  // refused by the system where there is anything else
+    }
+}
+
+Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const SparedFiles& spared_files,
+                                        const std::optional<fs::path>& folder) {
+    const auto recorded = [&](const fs::path& place) {
+        for (std::size_t i = 0; folder && i < spared_files.receivers; ++i)
+            if (fs::absolute(recording_of(*folder, i)).lexically_normal() / place.filename() == place) return true;
+        return false;
+    };
+    for (const WireEnd& end : ends) {
+        if (end.place.empty() || end.place == "-") continue;
+        const std::string writer = fmt::format("{}{} '{}'", end.told_at, end.owner, end.uri);
+        if (const auto spared = check_spares(writer, end.place, spared_files.inputs); !spared) return spared;
+        if (is_recorded_name(fs::path(end.place).filename().string()) && recorded(end.place))
+            return fail(ErrorCode::usage,
+                        fmt::format("{}: this file belongs to the recording; expected another place", writer));
+    }
+    return {};
+}
+
+Result<void> spare_inputs(const SparedFiles& spared_files, const fs::path& folder) {
+    std::error_code absent;
+    for (std::size_t i = 0; i < spared_files.receivers; ++i)
+        for (const fs::directory_entry& there : fs::directory_iterator(recording_of(folder, i), absent)) {
+            if (!is_recorded_name(there.path().filename().string())) continue;
+            for (const fs::path& input : spared_files.inputs)
+                if (fs::equivalent(there.path(), input, absent))
+                    return fail(
+                        ErrorCode::usage,
+                        fmt::format("{}: the run reads this file, and its recording would take the place of it; "
+                                    "expected another folder than {}",
+                                    input.string(), folder.string()));
+        }
+    return {};
+}
+
+}  // namespace skyloop

@@ -1,0 +1,69 @@
+#include "run/emulator/simulation.hpp"
+
+#include <algorithm>
+
+#include "world/propagation/free_space.hpp"
+
+namespace skyloop {
+namespace {
+
+void make_fix(ErrorModel& model, Trace& trace) { trace.epoch.fix = model.fix(trace.truth, trace.sky, trace.arrivals); }
+
+void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings, ActiveFaults* faults) {
+    const Arrivals nothing;
+    const Arrivals& heard = settings.navigating ? trace.arrivals : nothing;
+    Measurement measured = receiver.measurement.measure(heard, trace.truth.time, settings);
+    trace.measurement = std::move(measured.terms);
+    trace.epoch.observations = std::move(measured.observations);
+    if (faults != nullptr) faults->edit_observations(trace);
+    trace.epoch.fix = receiver.navigation.solve(trace.epoch.observations, settings);
+}
+
+// Of a receiver that is stopped: not even dead reckoning.
+void withhold(Fix& fix) {
+    Fix nothing;
+    nothing.time = fix.time;
+    nothing.leap_seconds = fix.leap_seconds;
+    fix = std::move(nothing);
+}
+
+// The interference of the link budget raises the noise floor for all signals alike, however strong they are; of what it
+// takes from codes of different rates the largest is told. Faults tell their own, by band.
+FrontEnd front_end(const Arrivals& arrivals) {
+    FrontEnd seen;
+    for (const Arrival& arrival : arrivals.satellites)
+        if (arrival.cn0) seen.interference = std::max(seen.interference, arrival.interference_loss);
+    seen.lower_interference = seen.interference;
+    return seen;
+}
+
+}  // namespace
+
+Simulation::Simulation(Parts parts) : parts_(std::move(parts)) {}
+
+SkyView Simulation::view(const TruthState& truth) const { return observe_sky(truth, *parts_.navigation); }
+
+Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaults* faults) {
+    Trace trace;
+    trace.measures = measures();
+    trace.truth = parts_.trajectory->at(time);
+    trace.sky = observer_.observe(trace.truth, *parts_.navigation);
+    trace.arrivals = free_space(trace.sky);
+    trace.arrivals.antenna_speed = trace.truth.velocity.length();
+    for (const auto& effect : parts_.effects)
+        effect->apply(trace.arrivals, trace.sky, trace.truth);
+    const FrontEnd front = front_end(trace.arrivals);
+    if (faults != nullptr) faults->edit_arrivals(trace);
+    if (auto* receiver = std::get_if<MeasuringReceiver>(&parts_.fix_maker))
+        make_fix(*receiver, trace, settings, faults);
+    else
+        make_fix(*std::get<std::unique_ptr<ErrorModel>>(parts_.fix_maker), trace);
+    if (measures() && settings.subframes)
+        trace.epoch.subframes = subframes_.receive(trace.epoch.observations, *parts_.navigation, time);
+    if (!settings.navigating) withhold(trace.epoch.fix);
+    trace.epoch.front_end = front;
+    if (faults != nullptr) faults->edit_epoch(trace);
+    return trace;
+}
+
+}  // namespace skyloop

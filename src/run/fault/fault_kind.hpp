@@ -1,0 +1,99 @@
+/// Faults by name: what they are told, what they do, and what they stand for.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/random.hpp"
+#include "base/core/result.hpp"
+#include "firmware/firmware_faults.hpp"
+#include "run/fault/lost_cycles.hpp"
+#include "run/fault/parameters.hpp"
+#include "run/fault/wire_conditions.hpp"
+#include "world/flow/trace.hpp"
+
+namespace skyloop {
+
+/// Where a fault works.
+enum class FaultLayer {
+    signals,   ///< what reaches the antenna, or is measured of it
+    solution,  ///< what the receiver believes or reports
+    receiver,  ///< how it behaves
+    wire
+};
+inline constexpr std::string_view fault_layer_names[] = {"signals", "solution", "receiver", "wire"};
+
+/// An instant of a fault at work.
+struct FaultMoment {
+    GpsTime now;
+    Seconds since_start{0};             ///< of this occurrence
+    double strength = 1;                ///< 0 … 1 along its ramps
+    const TruthState* truth = nullptr;  ///< of the epoch; null for edits of the receiver, the wire and the pace
+    const SkyView* sky = nullptr;       ///< as `truth`; its satellites stand as those of the arrivals
+    LostCycles* lost_cycles = nullptr;  ///< of the receiver, for edits of observations; else null
+    MeasurementTerms* terms = nullptr;  ///< what the observations are made of, for edits of them; else null
+    double strength_rate = 0;           ///< 1/s, by which `strength` changes along its ramps
+};
+
+/// How simulated time passes against the clocks of the device under test.
+struct PaceConditions {
+    double rate = 1;  ///< simulated seconds per second of the run's own pace
+};
+
+/// A change of one value on its way.
+template <class Value>
+using Edit = std::function<void(Value&, const FaultMoment&)>;
+
+/// One occurrence of a fault at one receiver: the edits that it makes, each called while it lasts. An edit may keep
+/// state; a new occurrence is made anew. Edits of epochs are called once an epoch, in the order of their epochs; those
+/// of the receiver, the wire and the pace whenever the loop looks, and so must depend on the moment alone.
+struct Fault {
+    Edit<Arrivals> arrivals{};                  ///< before they are measured
+    Edit<Observations> observations{};          ///< before they are solved
+    Edit<Epoch> epoch{};                        ///< before the firmware sees it
+    Edit<firmware::NavigationState> report{};   ///< what the firmware is about to report
+    Edit<firmware::FirmwareFaults> firmware{};  ///< how it behaves
+    Edit<WireConditions> wire{};
+    Edit<PaceConditions> pace{};
+    std::vector<firmware::ReceiverEvent> at_start{};  ///< happen once
+    std::vector<firmware::ReceiverEvent> at_end{};
+};
+
+/// What an occurrence is made with.
+struct FaultContext {
+    std::uint64_t seed = 1;  ///< of the receiver that it works on
+    std::string name;        ///< of the fault, with the number of the occurrence: "outage", "outage#2"
+
+    /// Random numbers of its own.
+    [[nodiscard]] RandomStream stream(std::string_view of) const {
+        return RandomStream(seed, "fault." + name + "." + std::string(of));
+    }
+};
+
+/// A fault that can be asked for.
+struct FaultKind {
+    std::string name;  ///< as scenario files have it: "byte_loss"
+    FaultLayer layer = FaultLayer::signals;
+    std::string effect;  ///< what it does, a sentence
+    std::string cause;   ///< what brings it about in the world, a sentence
+    std::vector<ParameterSpec> parameters{};
+    /// Fails with `usage` for parameters that contradict each other.
+    std::function<Result<Fault>(const Parameters&, const FaultContext&)> make{};
+    bool measuring_receivers_only = false;  ///< nothing to see with a sensor model, which measures nothing
+    bool has_strength = true;               ///< it can be there in part, and so grow and fade along ramps
+};
+
+/// All of them, by layer, then in the order in which people list them.
+const std::vector<FaultKind>& fault_kinds();
+/// The one of that name, or null.
+const FaultKind* find_fault_kind(std::string_view name);
+
+/// What is wrong with the ramps of a fault of this kind: what is there or not, cannot have any.
+/// @param values `ramp_in_s` and `ramp_out_s` among them
+std::vector<ParameterMistake> ramp_mistakes(const FaultKind& kind, const Parameters& values);
+
+}  // namespace skyloop

@@ -1,0 +1,141 @@
+#include "run/fault/fault_listing.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "run/fault/command.hpp"
+#include "run/fault/timeline_keys.hpp"
+
+namespace skyloop {
+namespace {
+
+std::string value_text(const ParameterValue& value) {
+    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:g}", *number);
+    if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+    if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("\"{}\"", *text);
+    if (const auto* numbers = std::get_if<std::vector<double>>(&value))
+        return fmt::format("[{}]", fmt::join(*numbers, ", "));
+    return fmt::format("[\"{}\"]", fmt::join(std::get<std::vector<std::string>>(value), "\", \""));
+}
+
+bool has_limit(double limit) { return std::abs(limit) < std::numeric_limits<double>::max(); }
+
+std::string limits_text(const ParameterSpec& spec) {
+    if (has_limit(spec.least) && has_limit(spec.most)) return fmt::format(", {:g} to {:g}", spec.least, spec.most);
+    if (has_limit(spec.least)) return fmt::format(", at least {:g}", spec.least);
+    return has_limit(spec.most) ? fmt::format(", at most {:g}", spec.most) : std::string();
+}
+
+std::string type_text(const ParameterSpec& spec) {
+    switch (spec.type) {
+        case ParameterType::number:
+            return "number" + limits_text(spec);
+        case ParameterType::whole_number:
+            return "whole number" + limits_text(spec);
+        case ParameterType::flag:
+            return "true or false";
+        case ParameterType::word:
+            return fmt::format("{}", fmt::join(spec.choices, ", "));
+        case ParameterType::words:
+            return fmt::format("list of {}", fmt::join(spec.choices, ", "));
+        case ParameterType::text:
+            return "text";
+        case ParameterType::texts:
+            return "list of texts";
+        case ParameterType::numbers:
+            return "list of numbers" + limits_text(spec);
+    }
+    return "";
+}
+
+std::string standard_text(const ParameterSpec& spec) {
+    if (spec.needed) return "needed";
+    if (!spec.standard) return "none";
+    const auto* text = std::get_if<std::string>(&*spec.standard);
+    return text != nullptr && text->empty() ? "none" : value_text(*spec.standard);
+}
+
+std::string parameter_table(const std::vector<ParameterSpec>& specs) {
+    if (specs.empty()) return "";
+    std::string table = "| parameter | takes | default | meaning |\n|---|---|---|---|\n";
+    for (const ParameterSpec& spec : specs)
+        table +=
+            fmt::format("| `{}` | {} | {} | {} |\n", spec.name, type_text(spec), standard_text(spec), spec.meaning);
+    return table + "\n";
+}
+
+std::string layer_heading(FaultLayer layer) {
+    switch (layer) {
+        case FaultLayer::signals:
+            return "## Signals: what reaches the antenna\n\n";
+        case FaultLayer::solution:
+            return "## Solution: what the receiver believes or reports\n\n";
+        case FaultLayer::receiver:
+            return "## Receiver: how it behaves\n\n";
+        case FaultLayer::wire:
+            return "## Wire: what becomes of the bytes\n\n";
+    }
+    return "";
+}
+
+// What the kind cannot do.
+std::string bounds_of(const FaultKind& kind, std::string_view modern) {
+    return fmt::format("{}{}", kind.measuring_receivers_only ? fmt::format(" ({} only.)", modern) : "",
+                       kind.has_strength ? "" : " (No ramps.)");
+}
+
+std::string kinds_markdown() {
+    std::string page;
+    const FaultKind* before = nullptr;
+    for (const FaultKind& kind : fault_kinds()) {
+        if (before == nullptr || before->layer != kind.layer) page += layer_heading(kind.layer);
+        before = &kind;
+        page += fmt::format("### {}\n\n{}{} In the world: {}\n\n{}", kind.name, kind.effect,
+                            bounds_of(kind, "`modern`"), kind.cause, parameter_table(kind.parameters));
+    }
+    return page;
+}
+
+std::string commands_markdown() {
+    std::string page = "## Commands\n\n";
+    for (const CommandKind& kind : command_kinds())
+        page += fmt::format("### {}\n\n{}{}{}\n\n{}", kind.name, kind.meaning, kind.live_only ? " Of live runs." : "",
+                            kind.of_receiver ? " Takes `receiver`." : "", parameter_table(kind.parameters));
+    return page;
+}
+
+}  // namespace
+
+std::string fault_list_text() {
+    std::string text;
+    const FaultKind* before = nullptr;
+    for (const FaultKind& kind : fault_kinds()) {
+        if (before == nullptr || before->layer != kind.layer)
+            text += fmt::format("{}{}\n", before == nullptr ? "" : "\n",
+                                fault_layer_names[static_cast<std::size_t>(kind.layer)]);
+        before = &kind;
+        text += fmt::format("  {:<24} {}\n", kind.name, kind.effect);
+    }
+    return text;
+}
+
+std::string fault_text(const FaultKind& kind) {
+    std::string text = fmt::format("{} ({})\n  {}{}\n  In the world: {}\n", kind.name,
+                                   fault_layer_names[static_cast<std::size_t>(kind.layer)], kind.effect,
+                                   bounds_of(kind, "modern"), kind.cause);
+    for (const ParameterSpec& spec : kind.parameters)
+        text += fmt::format("  {:<24} {} ({}; default {})\n", spec.name, spec.meaning, type_text(spec),
+                            standard_text(spec));
+    return text;
+}
+
+std::string fault_catalogue_markdown() {
+    return "# Faults and commands\n\nWritten by `skyloop faults --format markdown`; how they are used stands in "
+           "[failsafe.md](failsafe.md).\n\n" +
+           kinds_markdown() + commands_markdown() +
+           "## Keys that every fault has besides\n\nCommands have those of them that say when they are carried "
+           "out.\n\n" +
+           parameter_table(timeline_keys());
+}
+
+}  // namespace skyloop

@@ -1,0 +1,257 @@
+// Errors of the solution itself: they are made before the firmware sees the epoch, and so pass through its own logic.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/core/gauss_markov.hpp"
+#include "detail/catalogue_parts.hpp"
+#include "detail/edit_shortcuts.hpp"
+#include "detail/report_faults.hpp"
+
+namespace skyloop {
+namespace {
+
+// Farther is no error of a solution.
+constexpr double farthest_m = 1e6;
+constexpr double fastest_error_mps = 1e4;
+
+ParameterSpec metres_parameter(std::string name, double standard, std::string meaning) {
+    return number_parameter(std::move(name), standard, -farthest_m, farthest_m, std::move(meaning));
+}
+
+// Its components have no standards: a north that nobody asked for beside an east that somebody did would be a surprise.
+std::vector<ParameterSpec> vector_parameters(std::string_view unit, double most, double north) {
+    const auto part = [&](std::string_view name, std::string meaning) {
+        return number_parameter(fmt::format("{}_{}", name, unit), std::nullopt, -most, most, std::move(meaning));
+    };
+    const std::string shown = unit == "mps" ? "m/s" : "m";
+    return {part("east", fmt::format("east of the truth, {}; 0 when it is not given", shown)),
+            part("north", fmt::format("north, {}; {:g} when none of the three is given, else 0", shown, north)),
+            part("up", fmt::format("up, {}; 0 when it is not given", shown))};
+}
+
+constexpr double usual_step_m = 50, usual_ramp_mps = 1, usual_velocity_bias_mps = 2;  // north
+
+std::vector<ParameterSpec> offset_parameters() { return vector_parameters("m", farthest_m, usual_step_m); }
+
+// An offset east, north, up.
+struct Offset {
+    double east = 0, north = 0, up = 0;
+};
+
+// @param north where no component is given
+Offset read_vector(const Parameters& p, const std::string& unit, double north) {
+    const auto e = p.optional_number("east_" + unit), n = p.optional_number("north_" + unit),
+               u = p.optional_number("up_" + unit);
+    if (!e && !n && !u) return {0, north, 0};
+    return {e.value_or(0), n.value_or(0), u.value_or(0)};
+}
+
+Offset read_offset(const Parameters& parameters) { return read_vector(parameters, "m", usual_step_m); }
+
+Offset operator*(const Offset& offset, double factor) {
+    return {offset.east * factor, offset.north * factor, offset.up * factor};
+}
+
+void shift_place(Fix& fix, const Offset& by) {
+    if (fix.has_position()) fix.position = displaced(fix.position, by.east, by.north, by.up);
+}
+
+Result<Fault> make_position_step(const Parameters& parameters, const FaultContext&) {
+    return fault_of_epoch([offset = read_offset(parameters)](Epoch& epoch, const FaultMoment& moment) {
+        shift_place(epoch.fix, offset * moment.strength);
+    });
+}
+
+Result<Fault> make_position_ramp(const Parameters& parameters, const FaultContext&) {
+    const Offset rate = read_vector(parameters, "mps", usual_ramp_mps);
+    const double most = parameters.number("most_m");
+    const bool velocity_too = parameters.flag("velocity_too");
+    return fault_of_epoch([=](Epoch& epoch, const FaultMoment& moment) {
+        const double speed = std::hypot(rate.east, rate.north, rate.up);
+        const double wanted = moment.since_start.value();
+        const double seconds = speed > 0 ? std::min(wanted, most / speed) : 0;
+        shift_place(epoch.fix, rate * (seconds * moment.strength));
+        if (!velocity_too || !epoch.fix.has_position()) return;
+        // How fast that offset changes: by itself up to its limit, and along the ramps.
+        const Offset more = rate * ((seconds < wanted ? 0 : moment.strength) + seconds * moment.strength_rate);
+        const VelocityNed& v = epoch.fix.velocity;
+        put_velocity(epoch.fix, {v.north + more.north, v.east + more.east, v.down - more.up});
+    });
+}
+
+// A random walk: its variance grows with time, however often there is an epoch.
+class RandomWalk {
+public:
+    RandomWalk(const Parameters& parameters, const FaultContext& context)
+        : horizontal_(parameters.number("horizontal_m_per_sqrt_s")),
+          vertical_(parameters.number("vertical_m_per_sqrt_s")),
+          random_(context.stream("drift")) {}
+    Offset at(GpsTime now) {
+        const double step = last_ ? std::sqrt(std::max(0.0, difference(now, *last_).value())) : 0;
+        last_ = now;
+        place_.east += horizontal_ * step * random_.normal();
+        place_.north += horizontal_ * step * random_.normal();
+        place_.up += vertical_ * step * random_.normal();
+        return place_;
+    }
+
+private:
+    double horizontal_, vertical_;
+    RandomStream random_;
+    std::optional<GpsTime> last_;
+    Offset place_;
+};
+
+Result<Fault> make_drift(const Parameters& parameters, const FaultContext& context) {
+    return fault_of_epoch([walk = RandomWalk(parameters, context)](Epoch& epoch, const FaultMoment& moment) mutable {
+        shift_place(epoch.fix, walk.at(moment.now) * moment.strength);
+    });
+}
+
+class Wander {
+public:
+    Wander(const Parameters& parameters, const FaultContext& context)
+        : east_(horizontal(parameters), context.stream("wander.east")),
+          north_(horizontal(parameters), context.stream("wander.north")),
+          up_({parameters.number("vertical_m"), time_of(parameters)}, context.stream("wander.up")) {}
+    Offset at(GpsTime now) {
+        const Seconds step(last_ ? std::max(0.0, difference(now, *last_).value()) : 0);
+        last_ = now;
+        return {east_.advance(step), north_.advance(step), up_.advance(step)};
+    }
+
+private:
+    static Seconds time_of(const Parameters& p) { return Seconds(p.number("correlation_time_s")); }
+    static GaussMarkovParameters horizontal(const Parameters& p) { return {p.number("horizontal_m"), time_of(p)}; }
+    GaussMarkov east_, north_, up_;
+    std::optional<GpsTime> last_;
+};
+
+Result<Fault> make_wander(const Parameters& parameters, const FaultContext& context) {
+    return fault_of_epoch([wander = Wander(parameters, context)](Epoch& epoch, const FaultMoment& moment) mutable {
+        shift_place(epoch.fix, wander.at(moment.now) * moment.strength);
+    });
+}
+
+Result<Fault> make_velocity_bias(const Parameters& parameters, const FaultContext&) {
+    const Offset bias = read_vector(parameters, "mps", usual_velocity_bias_mps);
+    return fault_of_epoch([bias](Epoch& epoch, const FaultMoment& moment) {
+        if (!epoch.fix.has_position()) return;
+        const Offset more = bias * moment.strength;
+        const VelocityNed& v = epoch.fix.velocity;
+        put_velocity(epoch.fix, {v.north + more.north, v.east + more.east, v.down - more.up});
+    });
+}
+
+Result<Fault> make_height_bias(const Parameters& parameters, const FaultContext&) {
+    return fault_of_epoch([height = parameters.number("height_m")](Epoch& epoch, const FaultMoment& moment) {
+        if (!epoch.fix.has_position()) return;
+        epoch.fix.position.height.above_ellipsoid += Metres(height * moment.strength);
+    });
+}
+
+void scale_dop(Dop& dop, double factor) {
+    for (double* d : {&dop.gdop, &dop.pdop, &dop.hdop, &dop.vdop, &dop.tdop, &dop.edop, &dop.ndop})
+        *d *= factor;
+}
+
+Result<Fault> make_biased_good_dop(const Parameters& parameters, const FaultContext&) {
+    const Offset offset = read_offset(parameters);
+    const double hdop = parameters.number("hdop"), accuracy = parameters.number("accuracy_m");
+    return fault_of_epoch([=](Epoch& epoch, const FaultMoment& moment) {
+        Fix& fix = epoch.fix;
+        if (!fix.has_position()) return;
+        shift_place(fix, offset * moment.strength);
+        if (fix.dop.hdop > 0) scale_dop(fix.dop, hdop / fix.dop.hdop);
+        fix.horizontal_accuracy = Metres(accuracy);
+        fix.vertical_accuracy = Metres(1.5 * accuracy);  // as the vertical of a good sky is to its horizontal
+    });
+}
+
+Result<Fault> make_accuracy_scale(const Parameters& parameters, const FaultContext&) {
+    return fault_of_epoch([factor = parameters.number("factor")](Epoch& epoch, const FaultMoment& moment) {
+        Fix& fix = epoch.fix;
+        const double scale = std::pow(factor, moment.strength);
+        fix.horizontal_accuracy = fix.horizontal_accuracy * scale;
+        fix.vertical_accuracy = fix.vertical_accuracy * scale;
+        fix.speed_accuracy = fix.speed_accuracy * scale;
+        fix.course_accuracy = fix.course_accuracy * scale;
+        fix.time_accuracy = fix.time_accuracy * scale;
+    });
+}
+
+std::vector<ParameterSpec> ramp_parameters() {
+    std::vector<ParameterSpec> all = vector_parameters("mps", fastest_error_mps, usual_ramp_mps);
+    all.push_back(number_parameter("most_m", farthest_m, 0, farthest_m, "the error grows no more beyond this, m"));
+    all.push_back(flag_parameter("velocity_too", false, "the velocity tells of the ramp as well"));
+    return all;
+}
+
+std::vector<ParameterSpec> good_dop_parameters() {
+    std::vector<ParameterSpec> all = offset_parameters();
+    all.push_back(number_parameter("hdop", 0.6, 0.1, 99, "HDOP that is told; the other DOPs follow"));
+    all.push_back(number_parameter("accuracy_m", 0.8, 0.001, farthest_m, "horizontal accuracy that is told, 1 σ, m"));
+    return all;
+}
+
+std::vector<ParameterSpec> spread_parameters(double horizontal, double vertical, const std::string& unit) {
+    return {number_parameter("horizontal_" + unit, horizontal, 0, farthest_m, "1 σ of east and of north, " + unit),
+            number_parameter("vertical_" + unit, vertical, 0, farthest_m, "1 σ of the height, " + unit)};
+}
+
+std::vector<ParameterSpec> wander_parameters() {
+    std::vector<ParameterSpec> all = spread_parameters(5, 8, "m");
+    all.push_back(number_parameter("correlation_time_s", 60, 0.01, 1e6, "after which it has forgotten itself, s"));
+    return all;
+}
+
+std::vector<FaultKind> place_error_kinds() {
+    using enum FaultLayer;
+    return {{"position_step", solution, "The position lies off by a constant vector, at once.",
+             "A change of the satellites in use, or of ambiguities or corrections.", offset_parameters(),
+             make_position_step},
+            {"position_ramp", solution, "The position moves away from the true one at a constant speed.",
+             "A slow capture by false signals, or a clock or orbit that goes wrong.", ramp_parameters(),
+             make_position_ramp},
+            {"drift", solution, "The position walks away at random: its error grows with the square root of time.",
+             "A receiver that filters heavily while it has few satellites.", spread_parameters(1, 1.5, "m_per_sqrt_s"),
+             make_drift},
+            {"wander", solution, "The position wanders around the true one: a Gauss-Markov process on each axis.",
+             "Multipath of a vehicle at rest, and what is left of the ionosphere.", wander_parameters(), make_wander},
+            {"biased_good_dop", solution, "The position lies off while DOP and accuracies say that all is well.",
+             "Reflected signals that agree with each other, or false ones: geometry knows nothing of them.",
+             good_dop_parameters(), make_biased_good_dop}};
+}
+
+std::vector<FaultKind> motion_and_quality_kinds() {
+    using enum FaultLayer;
+    return {
+        {"height_bias",
+         solution,
+         "The height lies off by a constant.",
+         "A wrong geoid or antenna height, or an ionosphere that is not modelled.",
+         {metres_parameter("height_m", 30, "above the true solution, m")},
+         make_height_bias},
+        {"velocity_bias", solution, "The velocity lies off by a constant vector; the position stays right.",
+         "Doppler shifts of reflected signals, or a filter tuned for another vehicle.",
+         vector_parameters("mps", fastest_error_mps, usual_velocity_bias_mps), make_velocity_bias},
+        {"accuracy_scale",
+         solution,
+         "The accuracies that the receiver tells of itself are too small, or too large.",
+         "Receivers estimate their accuracy from residuals, which reflected signals need not raise.",
+         {number_parameter("factor", 0.1, 0.001, 1000, "times the estimates; below 1 optimistic, above 1 pessimistic")},
+         make_accuracy_scale}};
+}
+
+}  // namespace
+
+std::vector<FaultKind> position_fault_kinds() {
+    return all_kinds_of({place_error_kinds, motion_and_quality_kinds, report_fault_kinds, epoch_fault_kinds});
+}
+
+}  // namespace skyloop

@@ -1,0 +1,150 @@
+#include "detail/range_faults.hpp"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "detail/signal_selector.hpp"
+
+namespace skyloop {
+namespace {
+
+void lengthen(Observation& o, Metres by, MeasurementTerms* terms) {
+    *o.pseudorange += by;
+    if (terms == nullptr) return;
+    for (SignalTerms& t : terms->signals)
+        if (t.satellite == o.satellite && t.signal == o.signal) t.false_code += by;
+}
+
+// @param offset m at full strength, by the time since the start
+template <class Offset>
+Result<Fault> offset_pseudoranges(const Parameters& parameters, Offset offset) {
+    auto chosen = ChosenSatellites::read(parameters);
+    if (!chosen) return fail(chosen.error());
+    Fault fault;
+    fault.observations = [chosen = std::move(*chosen), offset](Observations& observations,
+                                                               const FaultMoment& moment) mutable {
+        chosen.choose(observations, moment.sky);
+        for (Observation& o : observations.signals)
+            if (o.pseudorange && chosen.has(o.satellite))
+                lengthen(o, Metres(moment.strength * offset(moment.since_start.value())), moment.terms);
+    };
+    return fault;
+}
+
+FaultKind pseudorange_step() {
+    FaultKind kind;
+    kind.name = "pseudorange_step";
+    kind.effect = "Pseudoranges of some satellites are off by a constant; phase and Doppler shift are sound.";
+    kind.cause = "A channel that has locked to a side peak or a cross-correlation, a bad correction.";
+    kind.parameters = joined({needed_number("step_m", -1e7, 1e7, "m that the pseudorange is too long")},
+                             chosen_satellite_parameters());
+    kind.make = [](const Parameters& parameters, const FaultContext&) {
+        const double step = parameters.number("step_m");
+        return offset_pseudoranges(parameters, [step](double) { return step; });
+    };
+    kind.measuring_receivers_only = true;
+    return kind;
+}
+
+FaultKind pseudorange_ramp() {
+    FaultKind kind;
+    kind.name = "pseudorange_ramp";
+    kind.effect = "Pseudoranges of some satellites drift away; phase and Doppler shift are sound.";
+    kind.cause = "Code that leaves the carrier in an ionospheric front, a code loop that is drawn off by an echo.";
+    kind.parameters = joined({needed_number("ramp_mps", -1000, 1000, "m/s by which the pseudorange grows too long")},
+                             chosen_satellite_parameters());
+    kind.make = [](const Parameters& parameters, const FaultContext&) {
+        const double ramp = parameters.number("ramp_mps");
+        return offset_pseudoranges(parameters, [ramp](double t) { return ramp * t; });
+    };
+    kind.measuring_receivers_only = true;
+    return kind;
+}
+
+// Breaks the counts of cycles again and again; what they have lost is kept by the receiver, whose counts they are.
+//
+// State: of each signal the random numbers that say when.
+class CycleSlips {
+public:
+    CycleSlips(const Parameters& parameters, FaultContext context, SignalSelector selector)
+        : context_(std::move(context)),
+          selector_(std::move(selector)),
+          per_second_(parameters.number("slips_per_minute") / 60),
+          most_(parameters.number("most_cycles")),
+          flagged_(parameters.flag("flagged")) {}
+
+    void operator()(Observations& observations, const FaultMoment& moment) {
+        if (moment.lost_cycles == nullptr) return;
+        const double passed = last_ ? difference(moment.now, *last_).value() : 0;
+        last_ = moment.now;
+        const double chance = 1 - std::exp(-per_second_ * moment.strength * passed);
+        for (Observation& o : observations.signals) {
+            if (!o.carrier_phase || !selector_.takes(o.signal) || !takes(o.satellite)) continue;
+            RandomStream& numbers = numbers_of(o);
+            if (numbers.uniform() < chance) {
+                const double size = 1 + std::floor(numbers.uniform() * most_);
+                moment.lost_cycles->slip(o, moment.now, numbers.uniform() < 0.5 ? -size : size, flagged_);
+                o.slipped = o.slipped || flagged_;
+            }
+            if (!flagged_) moment.lost_cycles->hide(o);
+        }
+    }
+
+private:
+    [[nodiscard]] bool takes(SatelliteId satellite) const {
+        Arrival arrival;
+        arrival.id = satellite;
+        return selector_.takes(arrival);
+    }
+    RandomStream& numbers_of(const Observation& o) {
+        const std::pair key{o.satellite, o.signal};
+        const auto found = numbers_.find(key);
+        if (found != numbers_.end()) return found->second;
+        const std::string name = to_string(o.satellite) + "." + std::to_string(static_cast<int>(o.signal));
+        return numbers_.emplace(key, context_.stream(name)).first->second;
+    }
+
+    FaultContext context_;
+    SignalSelector selector_;
+    double per_second_, most_;
+    bool flagged_;
+    std::optional<GpsTime> last_;
+    std::map<std::pair<SatelliteId, Signal>, RandomStream> numbers_;
+};
+
+std::vector<ParameterSpec> cycle_slip_parameters() {
+    std::vector<ParameterSpec> specs{number_parameter("slips_per_minute", 6, 0, 6000, "of each signal, on average"),
+                                     number_parameter("most_cycles", 10, 1, 1e6, "that one slip loses or wins"),
+                                     flag_parameter("flagged", true, "the receiver notices its slips and says so")};
+    // Of the selectors, those that do not need the sky.
+    for (ParameterSpec& spec : selector_parameters(true))
+        if (spec.name == "constellations" || spec.name == "satellites" || spec.name == "signals")
+            specs.push_back(std::move(spec));
+    return specs;
+}
+
+FaultKind cycle_slips() {
+    FaultKind kind;
+    kind.name = "cycle_slips";
+    kind.effect =
+        "Carrier phases lose or win whole cycles at random, which breaks fixed ambiguities. The end of the fault "
+        "gives nothing back: a count stays off until its signal is tracked anew.";
+    kind.cause = "Vibration, shocks and foliage that the carrier loop does not bear, scintillation.";
+    kind.parameters = cycle_slip_parameters();
+    kind.make = [](const Parameters& parameters, const FaultContext& context) -> Result<Fault> {
+        auto selector = read_selector(parameters);
+        if (!selector) return fail(selector.error());
+        Fault fault;
+        fault.observations = CycleSlips(parameters, context, std::move(*selector));
+        return fault;
+    };
+    kind.measuring_receivers_only = true;
+    return kind;
+}
+
+}  // namespace
+
+std::vector<FaultKind> range_fault_kinds() { return {pseudorange_step(), pseudorange_ramp(), cycle_slips()}; }
+
+}  // namespace skyloop

@@ -1,0 +1,283 @@
+// How a receiver misbehaves towards its client.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "detail/catalogue_parts.hpp"
+#include "detail/edit_shortcuts.hpp"
+#include "detail/message_lookup.hpp"
+#include "firmware/start_kind.hpp"
+
+namespace skyloop {
+namespace {
+
+using firmware::FirmwareFaults;
+
+constexpr UbxMessageId mon_ver{0x0A, 0x04};
+constexpr double longest_delay_s = 3600;
+
+Result<Fault> make_receiver_silent(const Parameters&, const FaultContext&) {
+    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.mute = true; });
+}
+
+Result<Fault> make_receiver_deaf(const Parameters&, const FaultContext&) {
+    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.deaf = true; });
+}
+
+Result<Fault> make_never_answers(const Parameters&, const FaultContext&) {
+    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.unanswering = true; });
+}
+
+// Messages that fall into one of the sets.
+Result<Fault> make_of_messages(const Parameters& parameters, std::set<UbxMessageId> FirmwareFaults::*set) {
+    auto messages = read_messages(parameters, "messages");
+    if (!messages) return fail(messages.error());
+    return fault_of_firmware([set, messages = std::move(*messages)](FirmwareFaults& faults, const FaultMoment&) {
+        (faults.*set).insert(messages.begin(), messages.end());
+    });
+}
+
+Result<Fault> make_answers_selectively(const Parameters& parameters, const FaultContext&) {
+    return make_of_messages(parameters, &FirmwareFaults::unanswered);
+}
+
+Result<Fault> make_refuses_messages(const Parameters& parameters, const FaultContext&) {
+    return make_of_messages(parameters, &FirmwareFaults::refused);
+}
+
+Result<Fault> make_withheld_messages(const Parameters& parameters, const FaultContext&) {
+    return make_of_messages(parameters, &FirmwareFaults::withheld);
+}
+
+Result<Fault> make_refuses_keys(const Parameters& parameters, const FaultContext&) {
+    auto items = read_items(parameters, "keys");
+    if (!items) return fail(items.error());
+    return fault_of_firmware([items = std::move(*items)](FirmwareFaults& faults, const FaultMoment&) {
+        faults.refused_keys.insert(items.begin(), items.end());
+    });
+}
+
+Result<Fault> make_no_version(const Parameters&, const FaultContext&) {
+    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.unanswered.insert(mon_ver); });
+}
+
+Result<Fault> make_wrong_version(const Parameters& parameters, const FaultContext&) {
+    const std::string software = parameters.text("software");
+    const std::vector<std::string> extensions = parameters.texts("extensions");
+    if (software.empty() && extensions.empty())
+        return fail(ErrorCode::usage, "neither software nor extensions is given; expected one of them");
+    constexpr std::size_t longest_text = 30;  // CH[30] of MON-VER
+    std::vector<std::string> all = extensions;
+    all.push_back(software);
+    for (const std::string& text : all)
+        if (text.size() > longest_text)
+            return fail(ErrorCode::usage,
+                        fmt::format("'{}' has {} characters; expected at most {}", text, text.size(), longest_text));
+    return fault_of_firmware([=](FirmwareFaults& faults, const FaultMoment&) {
+        if (!software.empty()) faults.software = software;
+        if (!extensions.empty()) faults.extensions = extensions;
+    });
+}
+
+Result<Fault> make_forgets_configuration(const Parameters&, const FaultContext&) {
+    Fault fault;
+    fault.at_start.emplace_back(firmware::ForgetConfiguration{});
+    return fault;
+}
+
+Result<Fault> make_reboots(const Parameters& parameters, const FaultContext&) {
+    Fault fault;
+    const StartKind start = firmware::start_kind(parameters.text("start")).value_or(StartKind::hot);
+    fault.at_start.emplace_back(firmware::Reboot{start, parameters.flag("banner")});
+    return fault;
+}
+
+// After the cold start it has satellites and no solution for so long.
+Result<Fault> make_slow_cold_start(const Parameters& parameters, const FaultContext&) {
+    const double without_fix = parameters.number("without_fix_s");
+    Fault fault = fault_of_epoch([without_fix](Epoch& epoch, const FaultMoment& moment) {
+        if (moment.since_start.value() >= without_fix) return;
+        epoch.fix.type = FixType::none;
+        for (SatelliteStatus& s : epoch.fix.satellites)
+            s.used = false;
+    });
+    fault.at_start.emplace_back(firmware::Reboot{StartKind::cold, true});
+    return fault;
+}
+
+Result<Fault> make_changed_baud(const Parameters& parameters, const FaultContext&) {
+    Fault fault;
+    fault.at_start.emplace_back(firmware::ForceBaud{static_cast<std::uint32_t>(parameters.number("baud"))});
+    fault.at_end.emplace_back(firmware::ForceBaud{0});
+    return fault;
+}
+
+Result<Fault> make_jamming_flag_hidden(const Parameters&, const FaultContext&) {
+    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.jamming_hidden = true; });
+}
+
+Result<Fault> make_slow_answers(const Parameters& parameters, const FaultContext&) {
+    return fault_of_firmware([delay = parameters.number("delay_s")](FirmwareFaults& faults, const FaultMoment& moment) {
+        faults.answer_delay += Seconds(delay * moment.strength);
+    });
+}
+
+Result<Fault> make_solution_latency(const Parameters& parameters, const FaultContext&) {
+    const double delay = parameters.number("delay_s"), growth = parameters.number("growth_s_per_s");
+    return fault_of_firmware([=](FirmwareFaults& faults, const FaultMoment& moment) {
+        const double grown = std::min(longest_delay_s, delay + growth * moment.since_start.value());
+        faults.solution_delay += Seconds(grown * moment.strength);
+    });
+}
+
+Result<Fault> make_clock_drift(const Parameters& parameters, const FaultContext&) {
+    Fault fault;
+    fault.pace = [ppm = parameters.number("ppm")](PaceConditions& pace, const FaultMoment& moment) {
+        pace.rate *= 1 + ppm * 1e-6 * moment.strength;
+    };
+    return fault;
+}
+
+ParameterSpec name_list(std::string name, std::string meaning) {
+    ParameterSpec spec = texts_parameter(std::move(name), std::move(meaning));
+    spec.needed = true;
+    return spec;
+}
+
+std::vector<FaultKind> silence_kinds() {
+    using enum FaultLayer;
+    return without_strength(
+        {{"receiver_silent",
+          receiver,
+          "The receiver sends nothing at all, and hears and navigates on.",
+          "Firmware that hangs or a transmit pin that is dead, in flight (betaflight #13946, #15685).",
+          {},
+          make_receiver_silent},
+         {"receiver_deaf",
+          receiver,
+          "The receiver hears nothing; its messages go on.",
+          "A receive line that is not connected, which naive clients notice at configuration only.",
+          {},
+          make_receiver_deaf},
+         {"never_answers",
+          receiver,
+          "The receiver executes what it hears, and answers nothing.",
+          "Clones that take commands and have no acknowledgements.",
+          {},
+          make_never_answers},
+         {"answers_selectively",
+          receiver,
+          "The receiver executes the named messages, and does not answer them.",
+          "Clones and old firmware that know a part of the protocol.",
+          {name_list("messages", "names of messages that stay unanswered: MON-VER, CFG-VALSET, UBX-0A-04")},
+          make_answers_selectively},
+         {"no_version",
+          receiver,
+          "MON-VER is never answered.",
+          "Clones, and receivers that are still busy when the client asks (betaflight #15676).",
+          {},
+          make_no_version},
+         {"withheld_messages",
+          receiver,
+          "The named messages are not sent with the epochs, whatever is configured.",
+          "A configuration that was lost in part, or a message that the firmware no longer has.",
+          {name_list("messages", "names of messages that are not sent: NAV-PVT, GGA")},
+          make_withheld_messages}});
+}
+
+std::vector<FaultKind> refusal_kinds() {
+    using enum FaultLayer;
+    return without_strength(
+        {{"refuses_keys",
+          receiver,
+          "CFG-VALSET with one of the named items is answered with ACK-NAK, and nothing of it is taken.",
+          "Items that a firmware does not have, sent together with those that it has.",
+          {name_list("keys", "names of configuration items: CFG-ITFM-ENABLE")},
+          make_refuses_keys},
+         {"refuses_messages",
+          receiver,
+          "The named messages are answered with ACK-NAK and do nothing; sentences do nothing.",
+          "Old and new firmware that does not know each other's configuration messages.",
+          {name_list("messages", "names of messages that are refused: CFG-GNSS, CFG-VALSET")},
+          make_refuses_messages},
+         {"wrong_version",
+          receiver,
+          "MON-VER tells another firmware.",
+          "Clones with borrowed version strings, and updates that a driver has never seen.",
+          {text_parameter("software", "", "swVersion, at most 30 characters; empty: as it is"),
+           texts_parameter("extensions", "the extension strings, at most 30 characters each; none: as they are")},
+          make_wrong_version},
+         {"jamming_flag_hidden",
+          receiver,
+          "MON-HW and MON-RF say that interference is unknown; SEC-SIG alone tells it, on boards that have it.",
+          "F9 HPG 1.50 and later, on which drivers that read MON-RF see no jamming (PX4-GPSDrivers #231).",
+          {},
+          make_jamming_flag_hidden}});
+}
+
+std::vector<FaultKind> restart_kinds() {
+    using enum FaultLayer;
+    return without_strength(
+        {{"forgets_configuration",
+          receiver,
+          "All settings are those of the factory, the speed among them, without a banner; it navigates on. "
+          "The end of the fault gives nothing back: the client has to.",
+          "A dip of the supply with an empty backup battery, in flight (betaflight, INAV #3908).",
+          {},
+          make_forgets_configuration},
+         {"reboots",
+          receiver,
+          "The receiver starts anew, with what it has stored.",
+          "A dip of the supply, a watchdog, or a static discharge.",
+          {word_parameter("start", "hot", {"cold", "warm", "hot"}, "what it still knows"),
+           flag_parameter("banner", true, "it says who it is as it starts")},
+          make_reboots},
+         {"slow_cold_start",
+          receiver,
+          "The receiver starts anew knowing nothing, and has no solution for long.",
+          "A first start in a new place, without a battery or with a poor sky.",
+          {number_parameter("without_fix_s", 120, 0, 1e6, "from the start without a solution, s")},
+          make_slow_cold_start},
+         {"changed_baud",
+          receiver,
+          "The speed of the first UART is another one; at the end it is back, unless the client has set one since.",
+          "Settings that another client has stored, and drivers that trust what they set once (INAV #3908).",
+          {whole_number_parameter("baud", 9600, 300, 12e6, "speed, bit/s")},
+          make_changed_baud}});
+}
+
+std::vector<FaultKind> slowness_kinds() {
+    using enum FaultLayer;
+    const auto delay = [](double standard, std::string meaning) {
+        return number_parameter("delay_s", standard, 0, longest_delay_s, std::move(meaning));
+    };
+    return {{"slow_answers",
+             receiver,
+             "Answers come later than usual; the receiver goes on working meanwhile.",
+             "A receiver that is busy with acquisition or with writing its flash.",
+             {delay(1.5, "more before each answer, s")},
+             make_slow_answers},
+            {"solution_latency",
+             receiver,
+             "Solutions leave the receiver later after their epoch.",
+             "Many signals at a high rate: the processor falls behind.",
+             {delay(0.2, "more from the epoch to the first byte, s"),
+              number_parameter("growth_s_per_s", 0, 0, 10, "growth of the delay, s per s of the fault")},
+             make_solution_latency},
+            {"clock_drift",
+             receiver,
+             "The receiver's clock, and with it the rate of its epochs, runs off the client's; all receivers of a run "
+             "have one clock. Seen in runs against the clock alone: virtual time has no other clock.",
+             "Crystals of flight controllers that are off by tens of ppm (ArduPilot #20566).",
+             {number_parameter("ppm", 100, -100'000, 100'000, "how much faster the receiver is, 1e-6")},
+             make_clock_drift}};
+}
+
+}  // namespace
+
+std::vector<FaultKind> receiver_fault_kinds() {
+    return all_kinds_of({silence_kinds, refusal_kinds, restart_kinds, slowness_kinds});
+}
+
+}  // namespace skyloop

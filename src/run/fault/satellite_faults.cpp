@@ -1,0 +1,257 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "detail/arrival_edits.hpp"
+#include "detail/catalogue_parts.hpp"
+#include "detail/false_place.hpp"
+#include "detail/range_faults.hpp"
+#include "detail/signal_selector.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/gnss/earth_turn.hpp"
+#include "world/gnss/thin_shell.hpp"
+
+namespace skyloop {
+namespace {
+
+// What a satellite's clock is ahead of what it broadcasts: s, by the time since the start.
+template <class Ahead>
+Result<Fault> make_clock_fault(const Parameters& parameters, Ahead ahead) {
+    auto chosen = ChosenSatellites::read(parameters);
+    if (!chosen) return fail(chosen.error());
+    Fault fault;
+    fault.arrivals = [chosen = std::move(*chosen), ahead, rates = RateOfChange()](Arrivals& arrivals,
+                                                                                  const FaultMoment& moment) mutable {
+        chosen.choose(arrivals);
+        const Metres shorter(speed_of_light * ahead(moment.since_start.value()) * moment.strength);
+        for (Arrival& arrival : arrivals.satellites) {
+            if (!chosen.has(arrival.id)) continue;
+            arrival.signal_in_space_error -= shorter;
+            arrival.range_rate_error -= rates.of(arrival.id, shorter, moment.now);
+        }
+    };
+    return fault;
+}
+
+FaultKind satellite_clock_step() {
+    FaultKind kind;
+    kind.name = "satellite_clock_step";
+    kind.effect =
+        "The clock of a satellite jumps and its record does not tell: its range is off by the step, and the "
+        "carrier's count breaks.";
+    kind.cause = "A failing or exchanged atomic clock on board.";
+    kind.parameters = joined({needed_number("step_ns", -1e9, 1e9, "ns by which the clock jumps ahead; 1 ns is 0.3 m")},
+                             chosen_satellite_parameters());
+    kind.make = [](const Parameters& parameters, const FaultContext&) {
+        const double step = parameters.number("step_ns") * 1e-9;
+        return make_clock_fault(parameters, [step](double) { return step; });
+    };
+    kind.measuring_receivers_only = true;
+    return kind;
+}
+
+FaultKind satellite_clock_drift() {
+    FaultKind kind;
+    kind.name = "satellite_clock_drift";
+    kind.effect = "The clock of a satellite runs away from its record: its range error grows.";
+    kind.cause =
+        "A dying atomic clock, as that of GPS satellite SVN 23 on 2004-01-01, which led to hundreds of "
+        "kilometres of range error.";
+    kind.parameters = joined({needed_number("drift_ns_per_s", -1e6, 1e6, "ns that the clock gains each second")},
+                             chosen_satellite_parameters());
+    kind.make = [](const Parameters& parameters, const FaultContext&) {
+        const double drift = parameters.number("drift_ns_per_s") * 1e-9;
+        return make_clock_fault(parameters, [drift](double t) { return drift * t; });
+    };
+    kind.measuring_receivers_only = true;
+    return kind;
+}
+
+// How far a record is off at full growth, along the satellite's way in space, across it and outwards, m.
+struct OrbitError {
+    double along = 0, cross = 0, radial = 0;
+    [[nodiscard]] Eigen::Vector3d of(const SatelliteInView& satellite) const {
+        const Eigen::Vector3d& place = satellite.position_at_transmission.vector();
+        const Eigen::Vector3d turn = earth_rotation_rate * Eigen::Vector3d(-place.y(), place.x(), 0);
+        const Eigen::Vector3d outwards = place.normalized();
+        const Eigen::Vector3d motion = satellite.velocity_at_transmission.vector() + turn;
+        const Eigen::Vector3d across = outwards.cross(motion).normalized();
+        return turned_by(Eigen::Vector3d(along * across.cross(outwards) + cross * across + radial * outwards),
+                         satellite.travel_time.value());
+    }
+};
+
+// A receiver that computes the satellite in front of where it is computes another range: what is measured is short of
+// it by the part of the error along the line of sight.
+Result<Fault> make_wrong_ephemeris(const Parameters& parameters, const FaultContext&) {
+    auto chosen = ChosenSatellites::read(parameters);
+    if (!chosen) return fail(chosen.error());
+    const OrbitError error{parameters.optional_number("along_track_m").value_or(0),
+                           parameters.optional_number("cross_track_m").value_or(0),
+                           parameters.optional_number("radial_m").value_or(0)};
+    if (error.along == 0 && error.cross == 0 && error.radial == 0)
+        return fail(ErrorCode::usage, "no error is told; expected along_track_m, cross_track_m or radial_m");
+    const double growth = parameters.number("growth_s");
+    Fault fault;
+    fault.arrivals = [chosen = std::move(*chosen), error, growth, rates = RateOfChange()](
+                         Arrivals& arrivals, const FaultMoment& moment) mutable {
+        if (!knows_the_sky(moment, arrivals)) return;
+        chosen.choose(arrivals);
+        const double grown = growth > 0 ? std::min(moment.since_start.value() / growth, 1.0) : 1;
+        for (std::size_t i = 0; i < arrivals.satellites.size(); ++i) {
+            Arrival& arrival = arrivals.satellites[i];
+            if (!chosen.has(arrival.id)) continue;
+            const SatelliteInView& satellite = moment.sky->satellites[i];
+            const Eigen::Vector3d place =
+                turned_by(satellite.position_at_transmission.vector(), satellite.travel_time.value());
+            const Eigen::Vector3d line = (place - moment.truth->position.vector()).normalized();
+            const Metres off(-grown * moment.strength * line.dot(error.of(satellite)));
+            arrival.signal_in_space_error += off;
+            arrival.range_rate_error += rates.of(arrival.id, off, moment.now);
+        }
+    };
+    return fault;
+}
+
+FaultKind wrong_ephemeris() {
+    FaultKind kind;
+    kind.name = "wrong_ephemeris";
+    kind.effect =
+        "The record that a satellite broadcasts puts it elsewhere: its range is off by what of that lies "
+        "along the line of sight.";
+    kind.cause =
+        "A bad upload, as to all of GLONASS on 2014-04-01, or a manoeuvre of a satellite that is still set "
+        "healthy.";
+    kind.parameters =
+        joined({number_parameter("along_track_m", std::nullopt, -1e6, 1e6, "m along the satellite's way"),
+                number_parameter("cross_track_m", std::nullopt, -1e6, 1e6, "m across it, along its angular momentum"),
+                number_parameter("radial_m", std::nullopt, -1e6, 1e6, "m away from the Earth"),
+                number_parameter("growth_s", 0, 0, 1e6, "s over which the error grows from nothing")},
+               chosen_satellite_parameters());
+    kind.make = make_wrong_ephemeris;
+    kind.measuring_receivers_only = true;
+    return kind;
+}
+
+FaultKind unhealthy() {
+    FaultKind kind;
+    kind.name = "unhealthy";
+    kind.effect = "Satellites send that they are not to be used; they are tracked and not used.";
+    kind.cause = "Maintenance, or a failure that the ground has seen: eight GLONASS satellites at once on 2014-04-14.";
+    kind.parameters = selector_parameters(false);
+    kind.make = [](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
+        auto selector = read_selector(parameters);
+        if (!selector) return fail(selector.error());
+        Fault fault;
+        fault.arrivals = [selector = std::move(*selector)](Arrivals& arrivals, const FaultMoment&) {
+            for (Arrival& arrival : arrivals.satellites)
+                if (selector.takes(arrival)) arrival.called_unhealthy = true;
+        };
+        return fault;
+    };
+    kind.has_strength = false;
+    return kind;
+}
+
+// Vertical delay at L1 beside what the day has, as a plane over the antenna, m.
+struct StormFront {
+    double factor = 1;
+    double vertical = 0;
+    double gradient = 0;  // m/km
+    Angle towards;        // into which the delay grows
+};
+
+constexpr ThinShell storm_shell{Metres(6371000), Metres(350000)};
+
+// Where the ray crosses the shell, km over the ground towards where the storm grows.
+double way_into_storm(const StormFront& storm, const SkyDirection& direction) {
+    const double radius = storm_shell.earth_radius.value(), top = radius + storm_shell.height.value();
+    const double e = std::max(direction.elevation.rad(), 0.0);
+    const double across = std::numbers::pi / 2 - e - std::asin(radius * std::cos(e) / top);
+    return radius / 1000 * across * std::cos((direction.azimuth - storm.towards).rad());
+}
+
+void storm_over(Arrival& arrival, const StormFront& storm, const FaultMoment& moment) {
+    const double vertical = storm.vertical + storm.gradient * way_into_storm(storm, arrival.direction);
+    const double slant = single_layer_mapping(storm_shell, arrival.direction.elevation);
+    const double carrier = arrival.signals.empty() ? carrier_frequency_l1 : arrival.signals[0].carrier.value();
+    const double ratio = carrier_frequency_l1 / carrier;
+    const double added = arrival.iono_delay.value() * (storm.factor - 1) + vertical * slant * ratio * ratio;
+    const Metres before = arrival.iono_delay, wanted = before + Metres(moment.strength * added);
+    // There is no less than no ionosphere.
+    arrival.iono_delay = std::max(wanted, Metres(0));
+    arrival.false_iono_delay += arrival.iono_delay - before;
+    if (wanted > Metres(0)) arrival.false_iono_rate += MetresPerSecond(moment.strength_rate * added);
+}
+
+FaultKind ionospheric_storm() {
+    FaultKind kind;
+    kind.name = "ionospheric_storm";
+    kind.effect =
+        "The ionosphere delays more than the receiver's broadcast correction knows: positions are off by "
+        "metres, heights most. On a ramp Doppler follows; without one all counts of cycles break.";
+    kind.cause = "Geomagnetic storms, as those of October 2003 and May 2024.";
+    kind.parameters = {
+        number_parameter("tec_factor", 1, 0, 20, "by which the day's electron content is multiplied"),
+        number_parameter("vertical_delay_m", 0, -50, 200, "m at L1 that are added overhead"),
+        number_parameter("gradient_mm_per_km", 0, 0, 1000, "mm at L1 by which that grows with each km over the ground"),
+        number_parameter("gradient_towards_deg", 0, -360, 360, "degrees from north, where it grows to")};
+    kind.make = [](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
+        const StormFront storm{parameters.number("tec_factor"), parameters.number("vertical_delay_m"),
+                               parameters.number("gradient_mm_per_km") / 1000,
+                               Angle::degrees(parameters.number("gradient_towards_deg"))};
+        if (storm.factor == 1 && storm.vertical == 0 && storm.gradient == 0)
+            return fail(ErrorCode::usage,
+                        "no storm is told; expected tec_factor, vertical_delay_m or gradient_mm_per_km");
+        Fault fault;
+        fault.arrivals = [storm](Arrivals& arrivals, const FaultMoment& moment) {
+            for (Arrival& arrival : arrivals.satellites)
+                storm_over(arrival, storm, moment);
+        };
+        return fault;
+    };
+    return kind;
+}
+
+FaultKind scintillation() {
+    FaultKind kind;
+    kind.name = "scintillation";
+    kind.effect =
+        "Amplitude and phase of the selected signals flicker: C/N0 fades, ranges get noisy, cycles slip, and from "
+        "S4 of 0.71 on phases are lost.";
+    kind.cause = "Bubbles in the equatorial ionosphere after sunset, aurora.";
+    kind.parameters =
+        joined({number_parameter("s4", 0.6, 0, 1, "amplitude index at the first carrier"),
+                number_parameter("sigma_phi_rad", 0.3, 0, 3, "rad, 1 σ of the phase at the first carrier")},
+               selector_parameters(false));
+    kind.make = [](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
+        auto selector = read_selector(parameters);
+        if (!selector) return fail(selector.error());
+        Fault fault;
+        fault.arrivals = [selector = std::move(*selector), s4 = parameters.number("s4"),
+                          phase = parameters.number("sigma_phi_rad")](Arrivals& arrivals, const FaultMoment& moment) {
+            for (Arrival& arrival : arrivals.satellites) {
+                if (!selector.takes(arrival)) continue;
+                arrival.amplitude_scintillation = std::max(arrival.amplitude_scintillation, s4 * moment.strength);
+                arrival.phase_scintillation =
+                    std::max(arrival.phase_scintillation, Angle::radians(phase * moment.strength));
+            }
+        };
+        return fault;
+    };
+    kind.measuring_receivers_only = true;
+    return kind;
+}
+
+}  // namespace
+
+std::vector<FaultKind> satellite_fault_kinds() {
+    std::vector<FaultKind> kinds{satellite_clock_step(), satellite_clock_drift(), wrong_ephemeris(), unhealthy(),
+                                 ionospheric_storm(),    scintillation()};
+    for (FaultKind& kind : range_fault_kinds())
+        kinds.push_back(std::move(kind));
+    return kinds;
+}
+
+}  // namespace skyloop

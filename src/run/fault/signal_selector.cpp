@@ -1,0 +1,176 @@
+#include "detail/signal_selector.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "run/fault/known_names.hpp"
+#include "run/fault/selected_signals.hpp"
+
+namespace skyloop {
+namespace {
+
+// As board and scenario files write them, in the order of Signal.
+constexpr std::array<std::string_view, 9> signal_words{"L1", "L2", "L5", "E5b", "E6", "B1I", "B3I", "G1", "G2"};
+
+template <class T>
+bool contains(const std::vector<T>& list, const T& item) {
+    return std::find(list.begin(), list.end(), item) != list.end();
+}
+
+std::vector<std::string> words_of(std::span<const std::string_view> names) { return {names.begin(), names.end()}; }
+
+Result<std::vector<SatelliteId>> read_satellites(const Parameters& parameters) {
+    std::vector<SatelliteId> satellites;
+    for (const std::string& text : parameters.texts("satellites")) {
+        const auto satellite = parse_satellite(text);
+        if (!satellite)
+            return fail(ErrorCode::usage,
+                        fmt::format("satellites has '{}'; expected a system's letter and two digits, as G07", text));
+        if (const auto mistake = satellite_mistake(*satellite))
+            return fail(ErrorCode::usage, "satellites: " + *mistake);
+        satellites.push_back(*satellite);
+    }
+    return satellites;
+}
+
+std::optional<Error> read_sky(const Parameters& parameters, SignalSelector& selector) {
+    const auto from = parameters.optional_number("azimuth_from_deg"), to = parameters.optional_number("azimuth_to_deg");
+    if (from.has_value() != to.has_value())
+        return Error{ErrorCode::usage, "a sector has one end; expected both azimuth_from_deg and azimuth_to_deg"};
+    // Once round is told by numbers that lie 360 apart; other numbers of one direction are no sector.
+    const bool all_round = from && std::abs(*from - *to) == 360;
+    if (from && !all_round && std::remainder(*from - *to, 360.0) == 0)
+        return Error{ErrorCode::usage,
+                     fmt::format("the sector begins and ends at {:g}°; expected two directions", *from)};
+    if (from && !all_round) selector.azimuth = {Angle::degrees(*from), Angle::degrees(*to)};
+    const double low = parameters.optional_number("elevation_from_deg").value_or(-90);
+    const double high = parameters.optional_number("elevation_to_deg").value_or(90);
+    if (low > high)
+        return Error{ErrorCode::usage, fmt::format("elevation_from_deg is {:g}, above elevation_to_deg, which is {:g}; "
+                                                   "expected the lower one first",
+                                                   low, high)};
+    selector.elevation = {Angle::degrees(low), Angle::degrees(high)};
+    return std::nullopt;
+}
+
+// Clockwise from `from` to `direction`, 0 … 2π.
+double turn_from(Angle from, Angle direction) {
+    const double turn = std::fmod((direction - from).rad(), 2 * std::numbers::pi);
+    return turn < 0 ? turn + 2 * std::numbers::pi : turn;
+}
+
+}  // namespace
+
+bool SignalSelector::takes(const Arrival& arrival) const {
+    if (!constellations.empty() && !contains(constellations, arrival.id.constellation)) return false;
+    if (!satellites.empty() && !contains(satellites, arrival.id)) return false;
+    if (arrival.direction.elevation < elevation[0] || arrival.direction.elevation > elevation[1]) return false;
+    return !azimuth || turn_from((*azimuth)[0], arrival.direction.azimuth) <= turn_from((*azimuth)[0], (*azimuth)[1]);
+}
+
+bool SignalSelector::takes(Signal signal) const { return signals.empty() || contains(signals, signal); }
+
+std::vector<ParameterSpec> selector_parameters(bool signals) {
+    std::vector<ParameterSpec> specs{
+        words_parameter("constellations", words_of(constellation_names), "systems that are hit; none given: all"),
+        texts_parameter("satellites", "satellites that are hit, as G07; none given: all"),
+        number_parameter("azimuth_from_deg", std::nullopt, -360, 360,
+                         "degrees clockwise from north, where a sector of the sky begins"),
+        number_parameter("azimuth_to_deg", std::nullopt, -360, 360, "degrees, where the sector ends, clockwise"),
+        number_parameter("elevation_from_deg", std::nullopt, -90, 90, "degrees, lower edge of a band of the sky"),
+        number_parameter("elevation_to_deg", std::nullopt, -90, 90, "degrees, upper edge of the band")};
+    if (signals)
+        specs.push_back(words_parameter("signals", words_of(signal_words),
+                                        "carriers that are hit; none given: all of a satellite"));
+    return specs;
+}
+
+Result<SignalSelector> read_selector(const Parameters& parameters) {
+    SignalSelector selector;
+    for (const std::string& name : parameters.texts("constellations"))
+        if (const auto constellation = constellation_from_name(name)) selector.constellations.push_back(*constellation);
+    for (const std::string& word : parameters.texts("signals")) {
+        const auto found = std::find(signal_words.begin(), signal_words.end(), word);
+        if (found != signal_words.end()) selector.signals.push_back(static_cast<Signal>(found - signal_words.begin()));
+    }
+    auto satellites = read_satellites(parameters);
+    if (!satellites) return fail(satellites.error());
+    selector.satellites = std::move(*satellites);
+    for (const SatelliteId satellite : selector.satellites)
+        if (!selector.constellations.empty() && !contains(selector.constellations, satellite.constellation))
+            return fail(ErrorCode::usage,
+                        fmt::format("satellite {} is of {}, which constellations leaves out; expected satellites of "
+                                    "the named systems",
+                                    to_string(satellite), constellation_title(satellite.constellation)));
+    if (const auto error = read_sky(parameters, selector)) return fail(*error);
+    return selector;
+}
+
+bool is_for(const Parameters& parameters, SatelliteId satellite, Signal signal) {
+    const auto selector = read_selector(parameters);
+    if (!selector) return true;  // refused elsewhere
+    Arrival arrival;
+    arrival.id = satellite;
+    if (selector->azimuth) arrival.direction.azimuth = (*selector->azimuth)[0];
+    arrival.direction.elevation = selector->elevation[0];
+    return selector->takes(arrival) && selector->takes(signal);
+}
+
+std::vector<ParameterSpec> chosen_satellite_parameters() {
+    return {texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start"),
+            whole_number_parameter("satellite_count", std::nullopt, 1, 200,
+                                   "how many of the highest ones; 1 when not given")};
+}
+
+Result<ChosenSatellites> ChosenSatellites::read(const Parameters& parameters) {
+    auto named = read_satellites(parameters);
+    if (!named) return fail(named.error());
+    const auto count = parameters.optional_number("satellite_count");
+    if (count && !named->empty())
+        return fail(ErrorCode::usage, "both satellites and satellite_count are given; expected one of them");
+    ChosenSatellites chosen;
+    chosen.chosen_ = !named->empty();
+    chosen.satellites_ = std::move(*named);
+    chosen.count_ = static_cast<std::size_t>(count.value_or(1));
+    return chosen;
+}
+
+void ChosenSatellites::take_highest(std::vector<Candidate> candidates) {
+    if (candidates.empty()) return;
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.elevation > b.elevation; });
+    candidates.resize(std::min(candidates.size(), count_));
+    for (const Candidate& candidate : candidates)
+        satellites_.push_back(candidate.id);
+    chosen_ = true;
+}
+
+void ChosenSatellites::choose(const Arrivals& arrivals) {
+    if (chosen_) return;
+    std::vector<Candidate> candidates;
+    for (const Arrival& arrival : arrivals.satellites)
+        if (arrival.paths > 0) candidates.push_back({arrival.id, arrival.direction.elevation});
+    take_highest(std::move(candidates));
+}
+
+void ChosenSatellites::choose(const Observations& observations, const SkyView* sky) {
+    if (chosen_ || sky == nullptr) return;
+    std::vector<Candidate> candidates;
+    for (const SatelliteInView& satellite : sky->satellites)
+        if (std::any_of(observations.signals.begin(), observations.signals.end(),
+                        [&](const Observation& o) { return o.satellite == satellite.id; }))
+            candidates.push_back({satellite.id, satellite.elevation});
+    take_highest(std::move(candidates));
+}
+
+bool ChosenSatellites::has(SatelliteId satellite) const { return contains(satellites_, satellite); }
+
+std::vector<ParameterSpec> joined(std::vector<ParameterSpec> first, std::vector<ParameterSpec> second) {
+    std::move(second.begin(), second.end(), std::back_inserter(first));
+    return first;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,95 @@
+#include "detail/feed_hearer.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "base/core/steady_clock.hpp"
+
+namespace skyloop {
+
+FeedHearer::FeedHearer(std::string dialect, FeedContext context, FeedDesk& desk)
+    : name_(std::move(dialect)), context_(std::move(context)), desk_(desk) {}
+
+FeedDialect& FeedHearer::of(std::uint64_t speaker) {
+    auto& dialect = dialects_[speaker];
+    if (!dialect) dialect = make_dialect(name_, context_);
+    return *dialect;
+}
+
+FeedHearer::Heard FeedHearer::hear(std::uint64_t speaker, ByteSpan bytes, std::int64_t received_ns) {
+    desk_.tallies.messages += 1;
+    desk_.tallies.bytes += bytes.size();
+    FeedNews news = of(speaker).hear(bytes, received_ns);
+    Heard heard{std::move(news.answers), news.refused == 0};
+    keep(std::move(news), speaker, received_ns);
+    return heard;
+}
+
+void FeedHearer::keep(FeedNews news, std::uint64_t speaker, std::int64_t received_ns) {
+    desk_.tallies.samples += news.samples.size();
+    desk_.tallies.statements += news.samples.size() + news.others;
+    desk_.tallies.lost += news.lost;
+    if (!news.remark.empty() && !remarks_.contains(news.remark) && desk_.news.tell_once(news.remark))
+        remarks_.insert(std::move(news.remark));
+    if (news.refused > 0) {
+        desk_.tallies.refused += news.refused;
+        tell(FeedNewsDesk::Kind::refusal, "refused: " + news.refusal);
+    }
+    auto aside = news.asides.begin();
+    for (std::size_t i = 0; i <= news.samples.size(); ++i) {
+        for (; aside != news.asides.end() && aside->samples <= i; ++aside)
+            keep(std::move(*aside), speaker, received_ns);
+        if (i < news.samples.size()) items_.emplace_back(std::move(news.samples[i]));
+    }
+}
+
+void FeedHearer::keep(FeedAside aside, std::uint64_t speaker, std::int64_t received_ns) {
+    if (const auto* step = std::get_if<FeedMilestone>(&aside.what))
+        items_.emplace_back(FeedStep{step->until, received_ns, speaker});
+    else if (auto* command = std::get_if<Command>(&aside.what))
+        items_.emplace_back(std::move(*command));
+    else if (const auto* pause = std::get_if<FeedPause>(&aside.what)) {
+        if (pause->paused)
+            paused_.insert(speaker);
+        else
+            paused_.erase(speaker);
+        items_.emplace_back(*pause);
+    } else
+        items_.emplace_back(FeedEnd{});
+}
+
+std::vector<Bytes> FeedHearer::say(std::uint64_t speaker) { return of(speaker).say(); }
+
+std::vector<Bytes> FeedHearer::stepped(std::uint64_t speaker, Nanoseconds until, std::uint64_t bytes) {
+    const auto found = dialects_.find(speaker);
+    return found == dialects_.end() ? std::vector<Bytes>() : found->second->stepped(until, bytes);
+}
+
+// A pause ends with the connection that told of it: nobody is left to do so.
+void FeedHearer::end_pause(std::uint64_t speaker) {
+    if (paused_.erase(speaker) > 0 && paused_.empty()) items_.emplace_back(FeedPause{false});
+}
+
+void FeedHearer::forget(std::uint64_t speaker) {
+    dialects_.erase(speaker);
+    end_pause(speaker);
+}
+
+void FeedHearer::reconnected(std::uint64_t speaker) {
+    of(speaker).reconnected();
+    end_pause(speaker);
+}
+
+void FeedHearer::flush() {
+    const std::size_t dropped = desk_.inbox.put(items_);
+    if (dropped == 0) return;
+    desk_.tallies.overflowed += dropped;
+    tell(FeedNewsDesk::Kind::drop, fmt::format("{} samples dropped: the run does not take them as fast", dropped));
+}
+
+void FeedHearer::tell(FeedNewsDesk::Kind kind, std::string sentence) {
+    desk_.news.tell(kind, std::move(sentence), steady_clock_ns());
+}
+
+}  // namespace skyloop

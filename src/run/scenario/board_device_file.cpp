@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/core/text_file.hpp"
+#include "detail/table_reader.hpp"
+#include "run/scenario/device_file.hpp"
+
+namespace skyloop {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr NumberRange device_speeds{1, 100'000'000};
+constexpr std::array<Word<DeviceKind>, 7> device_kind_words{{{"autopilot", DeviceKind::autopilot},
+                                                             {"receiver", DeviceKind::receiver},
+                                                             {"bridge", DeviceKind::bridge},
+                                                             {"relay", DeviceKind::relay},
+                                                             {"gpio", DeviceKind::gpio},
+                                                             {"hub", DeviceKind::hub},
+                                                             {"bootloader", DeviceKind::bootloader}}};
+constexpr std::array<Word<DeviceTransport>, 3> device_transport_words{
+    {{"serial", DeviceTransport::serial}, {"usb", DeviceTransport::usb}, {"hid", DeviceTransport::hid}}};
+
+// Ids are written into udev rules and compared as numbers: four hexadecimal digits each.
+void check_ids(TableReader& device, std::string_view key, const std::vector<std::string>& texts,
+               std::vector<UsbIds>& ids) {
+    for (const std::string& text : texts) {
+        const auto read = parse_usb_ids(text);
+        if (!read)
+            return device.mistake(key, fmt::format("is '{}'; expected VID:PID, four hexadecimal digits each, such as "
+                                                   "'1546:01a8'",
+                                                   text));
+        if (std::find(ids.begin(), ids.end(), *read) != ids.end())
+            return device.mistake(key, fmt::format("holds {} twice; expected it once", text));
+        ids.push_back(*read);
+    }
+}
+
+// Names and sentences stand in one line of tables and rules.
+bool is_one_line(std::string_view text) {
+    return std::none_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+}
+
+void check_name(TableReader& device, const DeviceProfile& profile) {
+    const bool plain = std::all_of(profile.name.begin(), profile.name.end(),
+                                   [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; });
+    if (profile.name.empty()) return device.mistake_here("has no name; expected a key 'name'");
+    if (!plain)
+        device.mistake("name", fmt::format("is '{}'; expected lower-case letters, digits and hyphens", profile.name));
+}
+
+void check_lines(TableReader& device, const DeviceProfile& profile) {
+    if (!is_one_line(profile.description)) device.mistake("description", "has line breaks; expected one line");
+    if (!is_one_line(profile.good_for)) device.mistake("good_for", "has line breaks; expected one line");
+    if (!std::all_of(profile.hints.begin(), profile.hints.end(), is_one_line))
+        device.mistake("hints", "hold line breaks; expected one line each");
+}
+
+DeviceProfile read_device(TableReader& device, const std::vector<std::string>& bootloader_products) {
+    DeviceProfile profile;
+    profile.bootloader_products = bootloader_products;
+    std::vector<std::string> ids, bootloader_ids;
+    device.text("name", profile.name);
+    device.text("description", profile.description);
+    if (!device.has("kind")) device.mistake_here("has no kind; expected a key 'kind'");
+    device.word("kind", device_kind_words, profile.kind);
+    device.text_or_texts("usb", ids);
+    if (ids.empty()) device.mistake_here("has no ids; expected a key 'usb' such as \"1546:01a8\"");
+    device.text_or_texts("product", profile.products);
+    device.text_or_texts("manufacturer", profile.manufacturers);
+    device.text_or_texts("bootloader_usb", bootloader_ids);
+    device.text_or_texts("bootloader_product", profile.bootloader_products);
+    device.text("good_for", profile.good_for);
+    device.word("transport", device_transport_words, profile.transport);
+    device.integer("baud", profile.baud, device_speeds);
+    device.integer("max_baud", profile.max_baud, device_speeds);
+    if (profile.max_baud != 0 && profile.baud > profile.max_baud)
+        device.mistake("baud", fmt::format("is {}; expected at most max_baud, {}", profile.baud, profile.max_baud));
+    device.integer("latency_timer_ms", profile.latency_timer_ms, {1, 255});
+    device.texts("hints", profile.hints);
+    check_ids(device, "usb", ids, profile.ids);
+    check_ids(device, "bootloader_usb", bootloader_ids, profile.bootloader_ids);
+    check_name(device, profile);
+    check_lines(device, profile);
+    return profile;
+}
+
+// The ids that two devices share though nothing tells them apart.
+std::optional<UsbIds> shared_ids(const DeviceProfile& a, const DeviceProfile& b) {
+    if (a.needs_strings() || b.needs_strings()) return std::nullopt;
+    const auto shared = std::find_first_of(a.ids.begin(), a.ids.end(), b.ids.begin(), b.ids.end());
+    return shared == a.ids.end() ? std::nullopt : std::optional(*shared);
+}
+
+// What is wrong with a device beside one that was read before; empty: nothing.
+std::string clash(const DeviceProfile& earlier, const DeviceProfile& device) {
+    if (earlier.name == device.name) return fmt::format("name: '{}' is that of another device", device.name);
+    if (const auto ids = shared_ids(earlier, device))
+        return fmt::format("usb: {} is that of '{}' too; expected a product or manufacturer that tells '{}' from it",
+                           to_string(*ids), earlier.name, device.name);
+    return {};
+}
+
+// Files by folder and name; of files of the same name, the one of the first directory.
+std::map<fs::path, fs::path> device_files(std::span<const fs::path> directories) {
+    std::map<fs::path, fs::path> files;
+    for (const fs::path& directory : directories) {
+        for (const char* folder : {"adapters", "autopilots"}) {
+            std::error_code error;
+            for (fs::directory_iterator entry(directory / folder, error), end; !error && entry != end;
+                 entry.increment(error))
+                if (entry->path().extension() == ".toml")
+                    files.try_emplace(fs::path(folder) / entry->path().filename(), entry->path());
+        }
+    }
+    return files;
+}
+
+}  // namespace
+
+Result<std::vector<DeviceProfile>> read_devices(std::string_view toml_text, std::string_view name) {
+    std::vector<DeviceProfile> devices;
+    const auto read = read_toml(toml_text, std::string(name), [&](TableReader& top) {
+        std::string description;
+        std::vector<std::string> bootloader_products;
+        top.text("description", description);
+        top.text_or_texts("bootloader_product", bootloader_products);
+        if (!top.has("device")) top.mistake_here("has no device; expected tables headed [[device]]");
+        top.tables("device", [&](TableReader& table) {
+            const DeviceProfile device = read_device(table, bootloader_products);
+            for (const DeviceProfile& earlier : devices)
+                if (const std::string wrong = clash(earlier, device); !wrong.empty()) table.mistake_here(wrong);
+            devices.push_back(device);
+        });
+        if (top.has("device") && devices.empty())
+            top.mistake("device", "holds none; expected tables headed [[device]]");
+    });
+    if (!read) return fail(read.error());
+    return devices;
+}
+
+Result<std::vector<DeviceProfile>> load_devices(std::span<const fs::path> directories) {
+    std::vector<DeviceProfile> all;
+    for (const auto& [name, path] : device_files(directories)) {
+        const auto text = read_text_file(path);
+        if (!text) return fail(text.error());
+        auto devices = read_devices(*text, path.string());
+        if (!devices) return fail(devices.error());
+        for (DeviceProfile& device : *devices) {
+            for (const DeviceProfile& earlier : all)
+                if (const std::string wrong = clash(earlier, device); !wrong.empty())
+                    return fail(ErrorCode::input, fmt::format("{}: {}", path.string(), wrong));
+            all.push_back(std::move(device));
+        }
+    }
+    return all;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/core/spelling.hpp"
+#include "detail/board_keys.hpp"
+#include "detail/config_items.hpp"
+#include "firmware/board_messages.hpp"
+#include "firmware/config/config_handler.hpp"
+#include "firmware/config/message_names.hpp"
+
+namespace skyloop {
+namespace {
+
+using firmware::BoardProfile;
+using firmware::ConfigKey;
+using firmware::LegacyAnswer;
+
+constexpr std::array<Word<LegacyAnswer>, 4> legacy_answer_words{{{"apply", LegacyAnswer::apply},
+                                                                 {"ignore", LegacyAnswer::ignore},
+                                                                 {"refuse", LegacyAnswer::refuse},
+                                                                 {"silence", LegacyAnswer::silence}}};
+
+struct MessageNames {
+    std::vector<UbxMessageId> ids;
+    std::vector<std::string_view> names;
+    template <class List>
+    void add(const List& list) {
+        for (const auto& message : list) {
+            ids.push_back(message.id);
+            names.push_back(message.name);
+        }
+    }
+};
+
+std::vector<UbxMessageId> read_messages(TableReader& ubx, std::string_view key, const MessageNames& known) {
+    std::vector<UbxMessageId> messages;
+    const auto found = ubx.choices(key, known.names, "a list of messages by name, such as NAV-PVT, GGA or RTCM-1005");
+    if (found)
+        for (const std::size_t index : *found)
+            messages.push_back(known.ids[index]);
+    return messages;
+}
+
+void read_legacy(TableReader& legacy, BoardProfile& board) {
+    for (const firmware::NamedMessage& message : firmware::legacy_messages()) {
+        LegacyAnswer answer = LegacyAnswer::apply;
+        legacy.word(message.name, legacy_answer_words, answer);
+        if (legacy.has(message.name)) board.legacy[message.id] = answer;
+    }
+}
+
+// Eight bytes as on the wire: system, reserved and most channels, reserved, flags.
+void read_gnss_blocks(TableReader& ubx, BoardProfile& board) {
+    std::vector<std::string> texts;
+    ubx.texts("gnss_blocks", texts);
+    constexpr std::size_t block_size = 8;
+    for (const std::string& text : texts) {
+        const auto bytes = bytes_of_hex(text);
+        if (!bytes || bytes->size() != block_size)
+            return ubx.mistake("gnss_blocks",
+                               fmt::format("holds '{}'; expected eight bytes in hexadecimal digits", text));
+        const Bytes& b = *bytes;
+        std::uint32_t flags = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            flags |= std::uint32_t{b[4 + i]} << 8 * i;
+        board.gnss_blocks.push_back({b[0], b[1], b[2], flags});
+    }
+}
+
+// Whether a pattern, in which `*` stands for any text, covers the whole name.
+bool matches(std::string_view pattern, std::string_view name) {
+    while (!pattern.empty() && pattern.front() != '*') {
+        if (name.empty() || name.front() != pattern.front()) return false;
+        pattern.remove_prefix(1);
+        name.remove_prefix(1);
+    }
+    if (pattern.empty()) return name.empty();
+    const std::size_t more = pattern.find_first_not_of('*');
+    if (more == std::string_view::npos) return true;
+    pattern.remove_prefix(more);
+    // The text up to the next star at its first place: a later one would leave less for what follows.
+    const std::string_view part = pattern.substr(0, pattern.find('*'));
+    if (part.size() == pattern.size()) return name.ends_with(part);
+    const std::size_t place = name.find(part);
+    return place != std::string_view::npos && matches(pattern.substr(part.size()), name.substr(place + part.size()));
+}
+
+void read_absent_keys(TableReader& config, BoardProfile& board) {
+    std::vector<std::string> patterns;
+    config.texts("absent", patterns);
+    for (const std::string& pattern : patterns) {
+        bool found = false;
+        for (const ConfigKey& key : firmware::config_keys()) {
+            if (!matches(pattern, key.name)) continue;
+            board.absent_keys.insert(key.id);
+            found = true;
+        }
+        if (!found)
+            config.mistake("absent", fmt::format("holds '{}', which no configuration item is called{}", pattern,
+                                                 did_you_mean(pattern, config_item_names())));
+    }
+}
+
+}  // namespace
+
+void read_board_ubx(TableReader& ubx, BoardProfile& board) {
+    MessageNames sent, polled;
+    sent.add(firmware::output_messages());
+    polled.add(firmware::polled_messages());
+    polled.add(firmware::output_messages());
+    board.messages = read_messages(ubx, "messages", sent);
+    const auto only_polled = read_messages(ubx, "polled", polled);
+    board.polled.insert(only_polled.begin(), only_polled.end());
+    const auto unsent = read_messages(ubx, "unsent", sent);
+    board.unsent.insert(unsent.begin(), unsent.end());
+    ubx.table("legacy", [&](TableReader& legacy) { read_legacy(legacy, board); });
+    read_gnss_blocks(ubx, board);
+    ubx.integer("gnss_channels_hardware", board.gnss_channels_hardware, {0, 255});
+    ubx.integer("gnss_channels_used", board.gnss_channels_used, {0, 255});
+    ubx.integer("gnss_supported", board.gnss_supported, {0, 15});
+    ubx.integer("gnss_simultaneous", board.gnss_simultaneous, {0, 4});
+    ubx.boolean("comms_output_port", board.comms_output_port);
+    ubx.integer("galileo_words", board.galileo_words, {8, 9});
+}
+
+void leave_out_rates_of_others(BoardProfile& board) {
+    for (const firmware::OutputMessage& message : firmware::output_messages()) {
+        if (firmware::sends(board, message.id) || board.unsent.contains(message.id)) continue;
+        for (std::uint32_t port = 0; port < firmware::port_count; ++port)
+            board.absent_keys.insert(message.i2c_key + port);
+    }
+}
+
+void read_board_config(TableReader& config, BoardProfile& board) {
+    read_absent_keys(config, board);
+    for (const auto& [id, value] : read_config_items(config, "absent")) {
+        const std::string_view name = firmware::find_config_key(id)->name;
+        if (board.absent_keys.contains(id))
+            config.mistake(name, "is set, and is among the items that the board does not have");
+        else if (firmware::is_in_range(board, id, value))
+            board.config[id] = value;
+        else
+            config.mistake(name, fmt::format("is {}, which the receiver itself would refuse", value));
+    }
+}
+
+void read_signal_conflicts(TableReader& navigation, BoardProfile& board) {
+    std::vector<std::string> sets;
+    navigation.texts("signal_conflicts", sets);
+    for (const std::string& names : sets) {
+        std::set<std::uint32_t> conflict;
+        for (std::size_t begin = 0, end = 0; begin < names.size(); begin = end + 1) {
+            end = std::min(names.find(' ', begin), names.size());
+            const std::string name = names.substr(begin, end - begin);
+            const ConfigKey* key = firmware::find_config_key(name);
+            if (key == nullptr || !name.starts_with("CFG-SIGNAL-"))
+                return navigation.mistake("signal_conflicts",
+                                          fmt::format("holds '{}', which no item of CFG-SIGNAL is called{}", name,
+                                                      did_you_mean(name, config_item_names())));
+            conflict.insert(key->id);
+        }
+        board.signal_conflicts.push_back(std::move(conflict));
+    }
+}
+
+}  // namespace skyloop

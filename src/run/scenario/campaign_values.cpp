@@ -1,0 +1,175 @@
+#include "detail/campaign_values.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "detail/parsed_toml.hpp"
+#include "run/scenario/scenario_changes.hpp"
+
+namespace skyloop {
+namespace {
+
+// A text that TOML reads back as the same characters (TOML 1.0, "String").
+std::string quoted_text(std::string_view text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            quoted += fmt::format("\\{}", c);
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            quoted += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+        else
+            quoted += c;
+    }
+    return quoted + "\"";
+}
+
+// With a point or an exponent, so that it stays no whole number.
+std::string floating_text(double number) {
+    if (std::isnan(number)) return "nan";
+    if (std::isinf(number)) return number < 0 ? "-inf" : "inf";
+    std::string text = fmt::format("{}", number);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text;
+}
+
+template <class Moment>
+std::string moment_text(const Moment& moment) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << moment;
+    return text.str();
+}
+
+std::optional<std::string> list_text(const toml::array& list) {
+    std::string text;
+    for (const toml::node& item : list) {
+        const auto one = toml_text(item);
+        if (!one) return std::nullopt;
+        text += (text.empty() ? "" : ", ") + *one;
+    }
+    return "[" + text + "]";
+}
+
+// Values with commas between, as an array; or words.
+std::optional<std::vector<CampaignValue>> as_array(std::string_view text) {
+    try {
+        const toml::table table = parsed_toml(fmt::format("v = [{}\n]", text));
+        const toml::array* list = table.size() == 1 ? table["v"].as_array() : nullptr;
+        if (list == nullptr) return std::nullopt;
+        std::vector<CampaignValue> values;
+        for (const toml::node& item : *list) {
+            auto value = campaign_value(item);
+            if (!value) return std::nullopt;
+            values.push_back(std::move(*value));
+        }
+        return values;
+    } catch (const toml::parse_error&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+std::string sense_of(const CampaignValue& value) {
+    std::string sense;
+    const std::function<void(const toml::node&)> add = [&](const toml::node& node) {
+        const auto* number = node.as_floating_point();
+        if (const toml::array* list = node.as_array()) {
+            sense += "[";
+            for (const toml::node& item : *list)
+                add(item);
+            sense += "],";
+        } else if (number != nullptr && number->get() == std::floor(number->get()) && std::abs(number->get()) < 1e15) {
+            sense += fmt::format("{},", static_cast<std::int64_t>(number->get()));
+        } else {
+            sense += toml_text(node).value_or("") + ",";
+        }
+    };
+    with_toml_value(value, add);
+    return sense;
+}
+
+std::optional<std::string> toml_text(const toml::node& node) {
+    if (const auto* text = node.as_string()) return quoted_text(text->get());
+    if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+    if (const auto* number = node.as_floating_point()) return floating_text(number->get());
+    if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+    if (const auto* list = node.as_array()) return list_text(*list);
+    if (const auto* date = node.as_date()) return moment_text(date->get());
+    if (const auto* time = node.as_time()) return moment_text(time->get());
+    if (const auto* moment = node.as_date_time()) return moment_text(moment->get());
+    return std::nullopt;
+}
+
+std::optional<CampaignValue> campaign_value(const toml::node& node) {
+    const auto text = toml_text(node);
+    if (!text) return std::nullopt;
+    const auto* plain = node.as_string();
+    return CampaignValue{*text, plain != nullptr ? plain->get() : *text};
+}
+
+CampaignValue campaign_value(double number) { return {floating_text(number), floating_text(number)}; }
+
+CampaignValue campaign_value(std::int64_t number) { return {fmt::format("{}", number), fmt::format("{}", number)}; }
+
+void with_toml_value(const CampaignValue& value, const std::function<void(const toml::node&)>& use) {
+    const toml::table table = parsed_toml("v = " + value.toml);
+    use(*table.get("v"));
+}
+
+namespace {
+
+// A value that is written as TOML writes texts and arrays, and no plain word.
+bool begins_as_toml(std::string_view text) {
+    return !text.empty() && std::string_view("\"'[").find(text.front()) != std::string_view::npos;
+}
+
+// Of the first value: the comma behind it, or npos. Where it begins with a quote or a bracket, those within do not
+// count.
+std::size_t end_of_value(std::string_view text) {
+    char quote = 0;
+    int brackets = 0;
+    const bool is_toml = begins_as_toml(text);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == ',' && quote == 0 && brackets == 0) return i;
+        if (!is_toml) continue;
+        if (quote != 0) {
+            if (c == '\\' && quote == '"') ++i;
+            if (c == quote) quote = 0;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else {
+            brackets += c == '[' ? 1 : c == ']' ? -1 : 0;
+        }
+    }
+    return std::string_view::npos;
+}
+
+}  // namespace
+
+Result<std::vector<CampaignValue>> parse_campaign_values(std::string_view text) {
+    if (auto values = as_array(text); values && !values->empty()) return std::move(*values);
+    std::vector<CampaignValue> values;
+    for (std::string_view rest = text;;) {
+        const std::size_t comma = end_of_value(rest);
+        const std::string word(rest.substr(0, comma));
+        if (word.empty())
+            return fail(ErrorCode::usage, fmt::format("'{}' has an empty value; expected values with commas between, "
+                                                      "such as 1.5,2 or town,street",
+                                                      text));
+        auto one = as_array(word);
+        if (begins_as_toml(word) && (!one || one->size() != 1))
+            return fail(ErrorCode::usage,
+                        fmt::format("'{}' is no value; expected its quotes and brackets closed", word));
+        if (!one || one->size() != 1) one = as_array(quoted_text(word));
+        if (!one || one->size() != 1) return fail(ErrorCode::usage, "a value is no text in UTF-8");
+        values.push_back(std::move(one->front()));
+        if (comma == std::string_view::npos) return values;
+        rest.remove_prefix(comma + 1);
+    }
+}
+
+}  // namespace skyloop

@@ -1,0 +1,70 @@
+/// The keys of each part of a scenario file, and those that board files share.
+#pragma once
+
+#include "base/geo/level_frame.hpp"
+#include "run/scenario/scenario.hpp"
+#include "run/verdict/expectation.hpp"
+#include "table_reader.hpp"
+
+namespace skyloop {
+
+/// Everything in a scenario. @param folder that paths are relative to
+void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
+
+/// @param folder that paths are relative to
+void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
+/// Tells of each of `keys` that was given that it cannot act. @param name of the table within model.modern
+/// @param acts when it does: "with truth = \"constant\""
+void tell_idle(TableReader& table, ModernSettings& settings, std::string_view name,
+               std::initializer_list<std::string_view> keys, std::string_view acts);
+/// Those of the world: air, antenna, interference.
+void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
+void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder);
+/// Of [atmosphere]: Scenario::atmosphere and tec_maps.
+void read_atmosphere_keys(TableReader& atmosphere, Scenario& scenario, const std::filesystem::path& folder);
+
+/// Reads a list of systems, as `constellations` of a scenario's [sky] or a board's [navigation].
+void read_constellation_list(TableReader& table, const char* key, std::vector<Constellation>& constellations);
+
+/// Of `export_limits`, of boards and receivers.
+inline constexpr std::array<Word<firmware::ExportLimits>, 3> export_limit_words{
+    {{"off", firmware::ExportLimits::off},
+     {"and", firmware::ExportLimits::both_exceeded},
+     {"or", firmware::ExportLimits::either_exceeded}}};
+
+/// What trajectories of one file share.
+struct TrajectoryContext {
+    std::optional<LevelFrame> level;  ///< of [frame]
+    std::filesystem::path folder;     ///< that paths are relative to
+};
+
+/// "receiver1": what messages call a receiver without a name. @param index its place in the list
+std::string default_receiver_name(std::size_t index);
+/// Reads every [[receiver]] of a scenario's top table.
+void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContext& context);
+
+/// Reads every [[output]] of a scenario's top table, after its receivers.
+void read_outputs(TableReader& top, Scenario& scenario);
+
+/// Reads [scene]. @param folder that paths are relative to
+void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder);
+
+/// "jamming", and where that is taken "jamming 2": what messages call a fault or command without a name.
+/// @param before the names of those before it in the list
+std::string default_entry_name(std::string_view kind, std::span<const std::string> before);
+/// Reads every [[fault]] and [[command]] of a scenario's top table, after its receivers.
+void read_timeline(TableReader& top, Scenario& scenario);
+/// Reads every [[expect]] of a scenario's top table, after its receivers, faults and commands, which they name.
+void read_expectations(TableReader& top, Scenario& scenario);
+
+/// Reads [campaign] of a scenario's top table.
+void read_campaign(TableReader& top, std::optional<CampaignSettings>& campaign);
+
+/// Reads [frame] of a file's top table.
+std::optional<LevelFrame> read_frame(TableReader& top);
+/// Reads the table `trajectory` within another; nothing when it is not there.
+/// @param warnings what a reader should be told is added
+std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, const TrajectoryContext& context,
+                                                       std::vector<std::string>& warnings);
+
+}  // namespace skyloop

@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "detail/scenario_keys.hpp"
+#include "run/fault/known_names.hpp"
+#include "run/verdict/expectation_sentence.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double longest_probe_s = 1e6;
+
+constexpr std::string_view probe_keys[] = {"expect_exit", "json", "at_s", "within_s", "timeout_s"};
+
+void read_condition(TableReader& table, Probe& probe) {
+    if (!table.has("json")) return;
+    std::string text = "a == 0";  // stays where the value is no text, which has been told
+    table.text("json", text);
+    auto condition = parse_json_condition(text);
+    if (condition)
+        probe.condition = std::move(*condition);
+    else
+        table.mistake("json", fmt::format("at character {}: {}", condition.error().column, condition.error().sentence));
+}
+
+void read_probe(TableReader& table, Expectation& expectation) {
+    Probe& probe = expectation.probe.emplace();
+    table.text_or_texts("command", probe.command);
+    if (probe.command.empty()) probe.command = {""};  // no list of texts, which has been told, or an empty one
+    if (probe.command.front().empty())
+        table.mistake("command", "names no program; expected a program and its arguments, or a text for /bin/sh");
+    if (table.has("expect_exit")) {
+        int code = 0;
+        table.integer("expect_exit", code, {0, 255});
+        probe.expect_exit = code;
+    }
+    read_condition(table, probe);
+    table.quantity("at_s", probe.at, {0, longest_probe_s});
+    if (table.has("within_s")) {
+        Seconds within(0);
+        table.quantity("within_s", within, {0, longest_probe_s});
+        probe.within = within;
+    }
+    table.quantity("timeout_s", probe.timeout, {0.01, longest_probe_s});
+    table.note_not_both("command", "receiver");
+    if (!expectation.receiver.empty())
+        table.mistake("receiver", "is of a sentence (what); a command asks whom it likes");
+}
+
+// A message or a satellite that there cannot be.
+std::optional<std::string> impossible_subject(const SubjectClause& subject) {
+    if (subject.satellite) return satellite_mistake(*subject.satellite);
+    return subject.message.empty() ? std::nullopt : message_name_mistake(subject.message);
+}
+
+void read_sentence(TableReader& table, Expectation& expectation) {
+    table.needs_one_of({"what", "command"}, "says nothing; expected what = \"…\" or command = …");
+    if (!table.has("what") && !table.recording()) return;
+    expectation.what = "fix";  // stays where the value is no text, which has been told
+    table.text("what", expectation.what);
+    auto sentence = parse_expectation(expectation.what);
+    if (sentence) {
+        if (const auto mistake = impossible_subject(sentence->subject)) table.mistake("what", *mistake);
+        expectation.sentence = std::move(*sentence);
+    } else {
+        table.mistake("what", fmt::format("at character {}: {}", sentence.error().column, sentence.error().sentence));
+    }
+    for (const std::string_view key : probe_keys) {
+        table.note_not_both("what", key);
+        if (!table.has(key)) continue;
+        table.has_been_read(key);
+        table.mistake(key, "is of a command; expected command = … beside it, or none of it beside what");
+    }
+}
+
+void read_expectation(TableReader& table, Expectation& expectation) {
+    table.text("name", expectation.name);
+    table.text("receiver", expectation.receiver);
+    if (!table.has("command")) return read_sentence(table, expectation);
+    read_probe(table, expectation);
+    table.note_not_both("what", "command");
+    if (table.has("what")) {
+        table.has_been_read("what");
+        table.mistake("what", "stands beside command; expected one of them");
+    }
+}
+
+// What the rest of a scenario is called.
+struct NamedThings {
+    std::vector<std::string> entries, receivers;
+};
+
+NamedThings named_things(const Scenario& scenario) {
+    NamedThings named;
+    for (const TimelineEntry& entry : timeline_of(scenario))
+        named.entries.push_back(entry.name);
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        named.receivers.push_back(receiver_name(scenario, i));
+    return named;
+}
+
+void check_names(TableReader& table, const Expectation& expectation, const NamedThings& named) {
+    if (expectation.sentence)
+        if (const std::string mistake = event_mistake(*expectation.sentence, named.entries); !mistake.empty())
+            table.mistake("what", mistake);
+    const std::string& receiver = expectation.receiver;
+    if (!receiver.empty() &&
+        std::find(named.receivers.begin(), named.receivers.end(), receiver) == named.receivers.end())
+        table.mistake("receiver", fmt::format("'{}' is no receiver of this scenario; expected one of {}", receiver,
+                                              fmt::join(named.receivers, ", ")));
+}
+
+}  // namespace
+
+void read_expectations(TableReader& top, Scenario& scenario) {
+    const NamedThings named = named_things(scenario);
+    top.tables("expect", [&](TableReader& table) {
+        Expectation& expectation = scenario.expectations.emplace_back();
+        read_expectation(table, expectation);
+        check_names(table, expectation, named);
+    });
+}
+
+}  // namespace skyloop

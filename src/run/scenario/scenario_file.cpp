@@ -1,0 +1,155 @@
+#include "run/scenario/scenario_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+
+#include "base/core/text_file.hpp"
+#include "base/time/utc_time.hpp"
+#include "detail/scenario_keys.hpp"
+
+namespace skyloop {
+namespace {
+
+void read_run_keys(TableReader& run, RunSettings& settings) {
+    const auto start = run.utc("start");
+    if (start == "now") {
+        settings.start_now = true;
+    } else if (start) {
+        const auto utc = parse_instant(*start);
+        if (utc)
+            settings.start = to_gps_time(*utc, LeapSeconds::announced());
+        else
+            run.mistake("start", utc.error().message + ", or \"now\"");
+    }
+    if (run.has("duration_s")) {
+        double duration = 1;
+        run.number("duration_s", duration, {std::numeric_limits<double>::min(), longest_run_s});
+        settings.duration = Seconds(duration);
+    }
+    run.integer("seed", settings.seed, NumberRange::not_negative());
+    run.number("speed", settings.speed, {1e-3, 1e6});
+}
+
+void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
+    std::vector<std::string> files;
+    sky.text_or_texts("navigation", files);
+    for (const std::string& file : files) {
+        if (file.empty()) sky.mistake("navigation", "is empty; expected the path of a file");
+        settings.navigation.push_back(folder / file);
+    }
+    sky.boolean("rebase_navigation", settings.rebase_navigation);
+    read_constellation_list(sky, "constellations", settings.constellations);
+    if (sky.has("elevation_mask_deg")) {
+        double mask = 5;
+        sky.number("elevation_mask_deg", mask, {0, 90});
+        settings.elevation_mask = Angle::degrees(mask);
+    }
+    static constexpr std::array<Word<std::optional<EphemerisRule>>, 2> rules{
+        {{"forward", EphemerisRule::forward}, {"nearest", EphemerisRule::nearest}}};
+    sky.word("ephemeris_rule", rules, settings.ephemeris_rule);
+    if (sky.has("ephemeris_validity_s")) {
+        Seconds validity(7200);
+        sky.quantity("ephemeris_validity_s", validity, {1, 14 * 86400.0});
+        settings.ephemeris_validity = validity;
+    }
+}
+
+// What a run may be refused for when it is put together.
+void remember_places(TableReader& table, std::string_view name, std::initializer_list<std::string_view> keys,
+                     ToldPlaces& told_at) {
+    for (const std::string_view key : keys)
+        if (table.has(key)) told_at[fmt::format("{}.{}", name, key)] = table.told_at(key);
+}
+
+bool is_live(const TrajectorySettings& trajectory) { return std::holds_alternative<LiveSettings>(trajectory); }
+
+// A source gives places on the Earth, or metres of a map of its own.
+void refuse_idle_frame(TableReader& top) {
+    if (top.has("frame"))
+        top.mistake("frame",
+                    "has no effect on a live trajectory; expected no [frame], and trajectory.origin where the "
+                    "source gives local metres");
+}
+
+bool is_all_live(const Scenario& scenario) {
+    const auto& receivers = scenario.receivers;
+    return std::all_of(receivers.begin(), receivers.end(), [&](const ReceiverEntry& receiver) {
+        return is_live(receiver.trajectory.value_or(scenario.trajectory));
+    });
+}
+
+}  // namespace
+
+std::string told_place(const Scenario& scenario, std::string_view key, std::string_view otherwise) {
+    const auto place = scenario.told_at.find(key);
+    return place != scenario.told_at.end() ? place->second : fmt::format("{}: ", otherwise);
+}
+
+void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
+    top.table("run", [&](TableReader& t) {
+        read_run_keys(t, scenario.run);
+        remember_places(t, "run", {"speed"}, scenario.told_at);
+    });
+    top.table("sky", [&](TableReader& t) {
+        read_sky_keys(t, scenario.sky, folder);
+        remember_places(t, "sky", {"rebase_navigation", "constellations"}, scenario.told_at);
+    });
+    const TrajectoryContext context{read_frame(top), folder};
+    if (auto path = read_trajectory_keys(top, context, scenario.warnings)) scenario.trajectory = std::move(*path);
+    top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
+    top.table("atmosphere", [&](TableReader& t) {
+        read_atmosphere_keys(t, scenario, folder);
+        scenario.atmosphere_keys = t.keys();
+        remember_places(t, "atmosphere", {"tec_source"}, scenario.told_at);
+    });
+    top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
+    read_receivers(top, scenario, context);
+    if (is_all_live(scenario)) refuse_idle_frame(top);
+    read_outputs(top, scenario);
+    read_timeline(top, scenario);
+    read_expectations(top, scenario);
+    read_campaign(top, scenario.campaign);
+}
+
+void read_constellation_list(TableReader& table, const char* key, std::vector<Constellation>& constellations) {
+    const auto found = table.choices(key, constellation_names);
+    if (!found) return;
+    constellations.clear();
+    for (const std::size_t index : *found)
+        constellations.push_back(static_cast<Constellation>(index));
+}
+
+Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file) {
+    Scenario scenario;
+    scenario.name = file.string();
+    scenario.source = text;
+    const auto read =
+        read_toml(text, file.string(), [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); });
+    if (!read) return fail(read.error());
+    return scenario;
+}
+
+Result<Scenario> read_scenario_file(const std::filesystem::path& file) {
+    constexpr std::size_t largest = std::size_t{16} << 20;
+    const auto text = read_text_file(file, largest);
+    if (!text) return fail(text.error());
+    return read_scenario(*text, file);
+}
+
+Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+    const auto text = read_text_file(file);
+    if (!text) return fail(text.error());
+    std::optional<TrajectorySettings> trajectory;
+    const auto read = read_toml(*text, file.string(), [&](TableReader& top) {
+        if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
+        trajectory = read_trajectory_keys(top, {read_frame(top), file.parent_path()}, warnings);
+        if (trajectory && is_live(*trajectory)) refuse_idle_frame(top);
+    });
+    if (!read) return fail(read.error());
+    return trajectory.value_or(FixedSettings{});
+}
+
+}  // namespace skyloop

@@ -1,0 +1,41 @@
+/// What is seen of a subject at one instant.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "run/fault/run_observer.hpp"
+#include "run/verdict/expectation.hpp"
+
+namespace skyloop {
+
+/// One look at a subject.
+struct Reading {
+    bool holds = false;
+    std::optional<double> number{};  ///< in the unit of the subject
+    std::string_view word{};         ///< where there is no number: "3d fix"
+    bool reported = true;            ///< false: the receiver reports nothing, and the subject is judged by that
+};
+
+/// Whether the subject is read from epochs.
+bool is_of_epochs(ExpectedSubject subject);
+/// Whether it is what a scripted client believes.
+bool is_belief(ExpectedSubject subject);
+/// Whether it is read from messages: neither of the two.
+bool is_of_messages(ExpectedSubject subject);
+bool is_silence(ExpectedSubject subject);
+
+/// The subject at an epoch; it must be one of epochs.
+Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen);
+/// The subject while the receiver tells nothing of its epochs.
+Reading read_silence(const SubjectClause& subject);
+/// Whether a message is one that the subject speaks of. Noise is no message.
+bool speaks_of(const SubjectClause& subject, const MessageSeen& seen);
+/// Whether a client's message changes the receiver's settings: UBX-CFG but for polls and CFG-VALGET, PUBX,40 and
+/// PUBX,41, the setting packets of PMTK (2xx, 3xx) and PAIR (050, 062, 066, 864) (RECEIVER.md section 5).
+bool is_reconfiguration(const MessageSeen& seen);
+/// "m", "dBHz", … of the subject's number.
+std::string_view unit_of(ExpectedSubject subject);
+
+}  // namespace skyloop

@@ -1,0 +1,170 @@
+#include "run/verdict/reports.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "base/core/terminal_text.hpp"
+#include "base/time/utc_time.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
+
+std::string capitals(std::string_view text) {
+    std::string large(text);
+    std::transform(large.begin(), large.end(), large.begin(),
+                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    return large;
+}
+
+std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
+
+std::size_t count_of(std::span<const Verdict> verdicts, Outcome outcome) {
+    return static_cast<std::size_t>(
+        std::count_if(verdicts.begin(), verdicts.end(), [outcome](const Verdict& v) { return v.outcome == outcome; }));
+}
+
+// The length of the UTF-8 character at the front of a text that XML 1.0 may have (section 2.2, Char), or 0.
+std::size_t xml_character(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+    const unsigned first = byte(0);
+    if (first < 0x80) return first >= 0x20 || first == '\t' || first == '\n' ? 1 : 0;
+    const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC2 ? 2 : 0;
+    if (length == 0 || first > 0xF4) return 0;
+    std::uint32_t code = first & (0xFFU >> (length + 1));
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0U) != 0x80) return 0;
+        code = code << 6U | (byte(i) & 0x3FU);
+    }
+    constexpr std::array<std::uint32_t, 5> least{0, 0, 0x80, 0x800, 0x10000};
+    const bool surrogate = code >= 0xD800 && code < 0xE000;
+    return code < least[length] || surrogate || code == 0xFFFE || code == 0xFFFF || code > 0x10FFFF ? 0 : length;
+}
+
+std::string xml_text(std::string_view text) {
+    std::string clean;
+    while (!text.empty()) {
+        const std::size_t length = xml_character(text);
+        clean += length == 0 ? replacement : text.substr(0, length);
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return clean;
+}
+
+void set(pugi::xml_node node, const char* name, const std::string& value) {
+    node.append_attribute(name).set_value(xml_text(value).c_str());
+}
+
+void add_property(pugi::xml_node properties, const std::string& name, const std::string& value) {
+    pugi::xml_node property = properties.append_child("property");
+    set(property, "name", name);
+    set(property, "value", value);
+}
+
+void add_counts(pugi::xml_node node, std::span<const Verdict> verdicts, const ReportedRun& run) {
+    set(node, "tests", std::to_string(verdicts.size()));
+    set(node, "failures", std::to_string(count_of(verdicts, Outcome::failed)));
+    set(node, "errors", std::to_string(count_of(verdicts, Outcome::undecided)));
+    set(node, "skipped", std::to_string(count_of(verdicts, Outcome::not_run)));
+    set(node, "time", fmt::format("{:.3f}", run.length.value()));
+}
+
+void add_case(pugi::xml_node suite, const Verdict& verdict, const ReportedRun& run) {
+    pugi::xml_node node = suite.append_child("testcase");
+    set(node, "classname", run.scenario);
+    set(node, "name", verdict.name);
+    set(node, "time", fmt::format("{:.3f}", verdict.run_time.value()));
+    const char* child = verdict.outcome == Outcome::failed      ? "failure"
+                        : verdict.outcome == Outcome::undecided ? "error"
+                        : verdict.outcome == Outcome::not_run   ? "skipped"
+                                                                : nullptr;
+    const std::string evidence = fmt::format("expected: {}\nseen: {}", verdict.expected, verdict.evidence);
+    if (child == nullptr) {
+        node.append_child("system-out").text().set(xml_text(evidence).c_str());
+        return;
+    }
+    pugi::xml_node result = node.append_child(child);
+    set(result, "message", verdict.evidence);
+    if (verdict.outcome != Outcome::not_run) set(result, "type", std::string(outcome_name(verdict.outcome)));
+    std::string text = evidence;
+    if (!run.evidence.empty()) text += fmt::format("\nevidence: {}", fmt::join(run.evidence, " "));
+    result.text().set(xml_text(text).c_str());
+}
+
+nlohmann::ordered_json verdict_object(const Verdict& verdict) {
+    nlohmann::ordered_json object{{"name", verdict.name},
+                                  {"expected", verdict.expected},
+                                  {"outcome", outcome_name(verdict.outcome)},
+                                  {"evidence", verdict.evidence},
+                                  {"run_time_s", verdict.run_time.value()}};
+    if (verdict.decided_at) {
+        object["decided_at_utc"] = utc_text(*verdict.decided_at);
+        object["decided_at_gps_ns"] = verdict.decided_at->time_since_epoch().count();
+    }
+    return object;
+}
+
+}  // namespace
+
+std::string verdict_text(std::span<const Verdict> verdicts, const ReportedRun& run) {
+    std::string text;
+    for (const Verdict& verdict : verdicts)
+        text += fmt::format("{:9}  {}: {} (at {:.3f} s)\n", capitals(outcome_name(verdict.outcome)),
+                            on_a_terminal(verdict.name), on_a_terminal(verdict.evidence), verdict.run_time.value());
+    text += fmt::format("{} of {} expectations met in {} (seed {}, {:.3f} s)", count_of(verdicts, Outcome::passed),
+                        verdicts.size(), on_a_terminal(run.scenario), run.seed, run.length.value());
+    for (const Outcome outcome : {Outcome::failed, Outcome::undecided, Outcome::not_run})
+        if (const std::size_t count = count_of(verdicts, outcome); count > 0)
+            text += fmt::format(", {} {}", count, outcome_name(outcome));
+    if (!verdicts.empty() && count_of(verdicts, Outcome::not_run) == verdicts.size())
+        text += ": nothing was judged, so the run is no success";
+    return text + "\n";
+}
+
+std::string verdict_json(std::span<const Verdict> verdicts, const ReportedRun& run) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Verdict& verdict : verdicts)
+        list.push_back(verdict_object(verdict));
+    const std::optional<bool> met = all_met(verdicts);
+    const nlohmann::ordered_json report{{"scenario", run.scenario},
+                                        {"seed", run.seed},
+                                        {"start_utc", utc_text(run.start)},
+                                        {"length_s", run.length.value()},
+                                        {"met", met ? nlohmann::ordered_json(*met) : nlohmann::ordered_json()},
+                                        {"evidence", run.evidence},
+                                        {"verdicts", std::move(list)}};
+    return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string junit_xml(std::span<const Verdict> verdicts, const ReportedRun& run) {
+    pugi::xml_document document;
+    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+    set(declaration, "version", "1.0");
+    set(declaration, "encoding", "UTF-8");
+    pugi::xml_node suites = document.append_child("testsuites");
+    set(suites, "name", "skyloop");
+    add_counts(suites, verdicts, run);
+    pugi::xml_node suite = suites.append_child("testsuite");
+    set(suite, "name", run.scenario);
+    add_counts(suite, verdicts, run);
+    // The time zone stays out: the form has none, and its readers take UTC.
+    set(suite, "timestamp", format_utc(to_utc(run.start, LeapSeconds::announced()), 0).substr(0, 19));
+    pugi::xml_node properties = suite.append_child("properties");
+    add_property(properties, "seed", std::to_string(run.seed));
+    add_property(properties, "start_utc", utc_text(run.start));
+    for (const std::string& file : run.evidence)
+        add_property(properties, "evidence", file);
+    for (const Verdict& verdict : verdicts)
+        add_case(suite, verdict, run);
+    std::ostringstream text;
+    document.save(text, "  ", pugi::format_indent, pugi::encoding_utf8);
+    return text.str();
+}
+
+}  // namespace skyloop

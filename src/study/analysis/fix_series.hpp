@@ -1,0 +1,76 @@
+/// A series of position fixes read from a file: ours, a receiver's log or a plain table.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/result.hpp"
+#include "base/core/units.hpp"
+#include "base/geo/geodetic.hpp"
+#include "base/time/gps_time.hpp"
+#include "study/analysis/signal_strength.hpp"
+
+namespace skyloop {
+
+/// One row of a fix file.
+struct FixSample {
+    std::optional<GpsTime> time;  ///< see FixSeries::dated
+    bool has_fix = false;
+    Geodetic position;              ///< means something only with `has_fix`
+    std::optional<Geodetic> truth;  ///< where the antenna really was, when the file knows
+    std::optional<int> satellites_used{};
+    std::vector<SignalReport> signals{};  ///< of the satellites tracked then; empty: not told
+};
+
+/// The samples of one file, or of a part of it, in the file's order.
+struct FixSeries {
+    std::string name;  ///< for people: the file's name, or a window of it
+    std::vector<FixSample> samples;
+    bool dated = false;                 ///< false: times only tell samples apart, their day is not known
+    std::optional<Seconds> interval;    ///< median time between samples; nothing when the file has no times
+    std::vector<std::string> warnings;  ///< what was skipped or assumed on reading, a sentence each
+
+    /// The samples with a fix.
+    [[nodiscard]] std::size_t fixes() const;
+    /// C/N0 by elevation in all samples; empty: not told.
+    [[nodiscard]] SignalStrengthByElevation signal_strength() const;
+};
+
+/// Reads a fix file, gzip-compressed or not. The format is known by its content:
+///  - a table with a header line that names latitude, longitude and height: fixes.csv (INTERFACE.md, section 3) or any
+///    other CSV with the usual names; columns in any order, others are ignored;
+///  - a table of numbers without a header: latitude, longitude (degrees), height above the ellipsoid (metres);
+///  - a log with NMEA 0183 sentences: GGA or GNS for positions, RMC for the date, GSV for signal strengths;
+///  - a log with u-blox UBX messages: NAV-PVT, NAV-SOL or NAV-POSLLH for positions, NAV-SAT or NAV-SVINFO for signal
+///    strengths; other bytes between them are passed over;
+///  - a solution of RTKLIB (.pos), geodetic or Earth-centred.
+/// Beside a file called fixes.csv the signal strengths are read from satellites.csv, where that is (INTERFACE.md,
+/// section 3). Fails with one sentence that names file and line. RINEX files are refused by name: they hold no fixes.
+Result<FixSeries> read_fix_series(const std::filesystem::path& path);
+
+/// The same from text already read; `name` stands for the file in messages.
+Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name);
+
+/// The series as a receiver would have written it, without the truth: errors are then about a point or its own mean.
+FixSeries without_truth(FixSeries series);
+
+/// Which fixes to keep.
+struct Slice {
+    std::size_t offset = 0;  ///< fixes left out at the start
+    std::size_t every = 1;   ///< keep one fix of so many, at least 1
+    std::size_t count = 0;   ///< fixes to keep at most; 0: all
+};
+
+/// The fixes that `slice` keeps, with the samples without a fix between them and before the first; of these, too, one
+/// of `slice.every` is kept, so that the share of fixes stays. The interval grows with `slice.every`.
+FixSeries slice(const FixSeries& series, const Slice& slice);
+
+/// The series cut into consecutive windows of `length` fixes, each with the samples without a fix before and between
+/// them; what is left at the end is dropped. `length` at least 1.
+std::vector<FixSeries> windows(const FixSeries& series, std::size_t length);
+
+}  // namespace skyloop

@@ -1,0 +1,82 @@
+/// Colours and measures that all pictures share.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "study/analysis/scene_sky.hpp"
+#include "study/plot/svg_document.hpp"
+#include "world/gnss/satellite.hpp"
+
+namespace skyloop::plot_style {
+
+inline constexpr std::string_view ink = "#1f2933";
+inline constexpr std::string_view faint_ink = "#5f6b7a";
+inline constexpr std::string_view grid = "#cbd3dd";
+inline constexpr std::string_view faint_grid = "#e3e8ef";
+inline constexpr std::string_view paper = "#ffffff";
+inline constexpr std::string_view panel = "#f6f8fb";
+inline constexpr std::string_view series = "#1f5fbf";
+inline constexpr std::string_view accent = "#b4540a";
+inline constexpr std::string_view unhealthy = "#8b95a1";
+inline constexpr std::string_view foliage = "#a9cf9d";
+inline constexpr std::string_view foliage_edge = "#6fa563";
+inline constexpr std::string_view line_of_sight = "#0a8f72";
+inline constexpr std::string_view reflected = "#e08a00";
+inline constexpr std::string_view blocked = "#b3403a";
+inline constexpr std::string_view skyline = "#c3cad3";
+
+/// One colour for each system, told apart by people with any kind of colour vision in pairs that meet in practice.
+constexpr std::string_view constellation_colour(Constellation constellation) {
+    switch (constellation) {
+        case Constellation::gps:
+            return "#1f5fbf";
+        case Constellation::sbas:
+            return "#7d5a2a";
+        case Constellation::galileo:
+            return "#0a8f72";
+        case Constellation::beidou:
+            return "#d17a00";
+        case Constellation::qzss:
+            return "#8040b5";
+        case Constellation::glonass:
+            return "#c8322f";
+        case Constellation::navic:
+            return "#0d8fb3";
+    }
+    return ink;
+}
+
+/// What a city does to a satellite: by colour, and by word.
+constexpr std::string_view reception_colour(Reception reception) {
+    return std::array{line_of_sight, reflected, blocked}[static_cast<std::size_t>(reception)];
+}
+constexpr std::string_view reception_word(Reception reception) {
+    return std::array<std::string_view, 3>{"line of sight", "reflected",
+                                           "blocked"}[static_cast<std::size_t>(reception)];
+}
+
+/// A sheet of paper of its own under the picture, so that it reads on a white page and on a dark one.
+inline void draw_sheet(SvgDocument& svg, SvgPoint size) {
+    svg.rectangle({0.5, 0.5}, {size.x - 1, size.y - 1}, 10, {.fill = paper, .stroke = grid});
+}
+
+/// Width of a line of text, pixels, on the safe side for common sans-serif fonts.
+inline double text_width(std::string_view text, double size) {
+    const auto characters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
+    return 0.62 * size * static_cast<double>(characters);
+}
+
+/// The round number 1, 2 or 5 times a power of ten that divides `span` into at most `most` steps.
+inline double round_step(double span, int most) {
+    const double raw = std::max(span, 1e-9) / most;
+    const double power = std::pow(10, std::floor(std::log10(raw)));
+    constexpr double slack = 1 + 1e-9;
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (factor * power * slack >= raw) return factor * power;
+    return 10 * power;
+}
+
+}  // namespace skyloop::plot_style

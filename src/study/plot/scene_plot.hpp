@@ -1,0 +1,47 @@
+/// A city from above, with an antenna in it and the ways of signals.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "study/analysis/scene_sky.hpp"
+#include "world/gnss/satellite.hpp"
+#include "world/scene/urban_scene.hpp"
+
+namespace skyloop {
+
+/// One satellite's signal as a line from the antenna over its points of reflection and on towards the satellite.
+struct ScenePlotRay {
+    SatelliteId id;
+    Reception reception = Reception::line_of_sight;
+    std::vector<Eigen::Vector3d> points;  ///< of reflection, from the antenna outwards, scene frame
+    Eigen::Vector3d departure;            ///< unit, towards the satellite after the last of them
+};
+
+/// Everything that the picture says. Lengths are metres in the scene's frame.
+struct ScenePlot {
+    std::string title;
+    std::string subtitle;                     ///< empty: how large it is and what it holds
+    std::optional<Eigen::AlignedBox2d> area;  ///< east, north; nothing: all of it
+    std::optional<Eigen::Vector3d> observer;  ///< the antenna
+    std::vector<ScenePlotRay> rays;
+};
+
+/// What the picture shows of one satellite: its direct ray, its first reflected path, or that it is blocked.
+/// @param satellite in the scene's frame
+ScenePlotRay scene_plot_ray(const SceneReception& reception, const SceneSatellite& satellite,
+                            const Eigen::Vector3d& antenna);
+
+/// A square of `radius` metres around a place.
+Eigen::AlignedBox2d scene_plot_area(const Eigen::Vector3d& middle, double radius);
+
+inline constexpr double scene_plot_width = 820;
+inline constexpr double scene_plot_height = 900;
+
+/// The picture as an SVG document of at most a few megabytes, however large the city.
+std::string scene_plot_svg(const UrbanScene& scene, const ScenePlot& plot);
+
+}  // namespace skyloop

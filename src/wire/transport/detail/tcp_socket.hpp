@@ -1,0 +1,45 @@
+/// What servers and clients on TCP share.
+#pragma once
+
+#include <netdb.h>
+
+#include <memory>
+#include <string>
+
+#include "base/core/bytes.hpp"
+#include "base/core/result.hpp"
+#include "wire/transport/file_descriptor.hpp"
+#include "wire/transport/tcp_connection.hpp"
+
+namespace skyloop {
+
+/// Most bytes that are taken in at one look: an other end that writes without end must not hold the loop.
+constexpr std::size_t most_read_at_once = 65536;
+
+struct AddressListDeleter {
+    void operator()(addrinfo* first) const { ::freeaddrinfo(first); }
+};
+using AddressList = std::unique_ptr<addrinfo, AddressListDeleter>;
+
+/// Every address that a host has. May wait for a name server. Fails with `outside` and a sentence that begins with
+/// `scheme`.
+/// @param to_listen addresses of this machine
+Result<AddressList> look_up(const TcpAddress& address, const std::string& scheme, bool to_listen);
+
+/// True when only programs of this machine reach what listens there.
+bool is_loopback(const sockaddr& address);
+
+/// A socket that neither waits nor outlives exec, with the send buffer of this program's wires; none, and errno, when
+/// the system refuses.
+FileDescriptor make_socket(const addrinfo& where);
+
+/// How a connection stands after a look.
+enum class StreamState { open, finished, gone };
+
+/// Appends what is there, up to `most` bytes in all; tells whether the other end has shut its sending side (`finished`)
+/// or broken the connection (`gone`).
+StreamState receive_available(int socket, Bytes& bytes, std::size_t most = most_read_at_once);
+/// Gives how many bytes the socket took; `state` becomes `gone` when the connection is broken.
+std::size_t send_available(int socket, ByteSpan bytes, StreamState& state);
+
+}  // namespace skyloop

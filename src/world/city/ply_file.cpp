@@ -1,0 +1,203 @@
+#include "detail/ply_file.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "detail/city_text.hpp"
+
+namespace skyloop {
+namespace {
+
+template <class T>
+double as_number(const unsigned char* bytes) {
+    T value;
+    std::memcpy(&value, bytes, sizeof value);
+    return static_cast<double>(value);
+}
+
+double binary_number(const char* at, const PlyType& type, bool turned) {
+    std::array<unsigned char, 8> bytes{};
+    for (unsigned i = 0; i < type.size; ++i)
+        bytes[turned ? type.size - 1 - i : i] = static_cast<unsigned char>(at[i]);
+    if (!type.integer) return type.size == 8 ? as_number<double>(bytes.data()) : as_number<float>(bytes.data());
+    switch (type.size) {
+        case 1:
+            return type.has_sign ? as_number<std::int8_t>(bytes.data()) : as_number<std::uint8_t>(bytes.data());
+        case 2:
+            return type.has_sign ? as_number<std::int16_t>(bytes.data()) : as_number<std::uint16_t>(bytes.data());
+        default:
+            return type.has_sign ? as_number<std::int32_t>(bytes.data()) : as_number<std::uint32_t>(bytes.data());
+    }
+}
+
+class PlyBody {
+public:
+    PlyBody(MeshBuilder& builder, std::string_view bytes, std::string_view name, const PlyHeader& header)
+        : builder_(builder),
+          bytes_(bytes),
+          name_(name),
+          encoding_(header.encoding),
+          turned_((std::endian::native == std::endian::big) == (header.encoding == PlyEncoding::little_endian)),
+          at_(header.size) {}
+
+    Result<void> read(const PlyElement& element, MeshPart part) {
+        const std::uint64_t each = element.least_size(encoding_), left = bytes_.size() - at_;
+        // The last number of a text needs no blank behind it.
+        if (element.count > 0 && (each == 0 || element.count > (left + 1) / each))
+            return fail(ErrorCode::input,
+                        fmt::format("{}: tells of {} elements '{}' of at least {} bytes, but {} bytes are left", name_,
+                                    element.count, shown(element.name), each, left));
+        if (element.name == "vertex") return vertices(element);
+        if (element.name == "face") return faces(element, part);
+        if (element.name == "tristrips" && element.count > 0)
+            return fail(ErrorCode::input, fmt::format("{}: holds triangle strips, which are not read", name_));
+        return other(element);
+    }
+
+private:
+    [[nodiscard]] std::string here() const {
+        return encoding_ == PlyEncoding::ascii ? line_place(name_, bytes_, at_)
+                                               : fmt::format("{}: byte {}", name_, at_);
+    }
+    tl::unexpected<Error> no_number(const PlyElement& element, std::uint64_t index) const {
+        const bool over = at_ >= bytes_.size() || encoding_ != PlyEncoding::ascii;
+        const std::size_t end = std::min(bytes_.find_first_of(" \t\r\n", at_), bytes_.size());
+        return fail(ErrorCode::input,
+                    over ? fmt::format("{}: ends in {} {} of {}", here(), shown(element.name), index, element.count)
+                         : fmt::format("{}: expected a number of {} {}, found '{}'", here(), shown(element.name), index,
+                                       shown(bytes_.substr(at_, end - at_))));
+    }
+
+    std::optional<double> number(const PlyType& type) {
+        if (encoding_ != PlyEncoding::ascii) {
+            if (bytes_.size() - at_ < type.size) return std::nullopt;
+            const double value = binary_number(bytes_.data() + at_, type, turned_);
+            at_ += type.size;
+            return value;
+        }
+        at_ = std::min(bytes_.find_first_not_of(" \t\r\n", at_), bytes_.size());
+        const char *first = bytes_.data() + at_, *end = bytes_.data() + bytes_.size();
+        const char* after = first;
+        const auto value = take_number(after, end);
+        if (!value || !(after == end || *after == ' ' || *after == '\t' || *after == '\r' || *after == '\n'))
+            return std::nullopt;
+        at_ += static_cast<std::size_t>(after - first);
+        return value;
+    }
+
+    // One property into list_: a list's items, or the number alone.
+    Result<void> property(const PlyElement& element, const PlyProperty& property, std::uint64_t index) {
+        list_.clear();
+        std::uint64_t count = 1;
+        if (property.count_type) {
+            const auto told = number(*property.count_type);
+            if (!told) return no_number(element, index);
+            const std::uint64_t least = encoding_ == PlyEncoding::ascii ? 2 : property.type.size;
+            const std::uint64_t fitting = (bytes_.size() - at_ + 1) / least;
+            const auto most = static_cast<double>(fitting);
+            if (!(*told >= 0 && *told <= most && *told == std::floor(*told)))
+                return fail(ErrorCode::input,
+                            fmt::format("{}: a list of {} items in {} {}, but {} bytes are left", here(), *told,
+                                        shown(element.name), index, bytes_.size() - at_));
+            count = static_cast<std::uint64_t>(*told);
+        }
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const auto value = number(property.type);
+            if (!value) return no_number(element, index);
+            list_.push_back(*value);
+        }
+        return {};
+    }
+
+    Result<void> vertices(const PlyElement& element) {
+        if (element.count == 0) return {};
+        if (!builder_.may_add(element.count, 0)) return builder_.too_many();
+        unsigned seen = 0;
+        for (const PlyProperty& each : element.properties)
+            if (!each.count_type && each.name.size() == 1 && each.name[0] >= 'x' && each.name[0] <= 'z')
+                seen |= 1U << (each.name[0] - 'x');
+        if (seen != 7) return fail(ErrorCode::input, fmt::format("{}: its vertices have no x, y and z", name_));
+        builder_.reserve(element.count, 0);
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            Eigen::Vector3d place = Eigen::Vector3d::Zero();
+            for (const PlyProperty& each : element.properties) {
+                if (auto done = property(element, each, i); !done) return done;
+                if (!each.count_type && each.name.size() == 1 && each.name[0] >= 'x' && each.name[0] <= 'z')
+                    place[each.name[0] - 'x'] = list_.front();
+            }
+            if (!builder_.add_vertex(place)) return builder_.too_many();
+        }
+        return {};
+    }
+
+    Result<void> faces(const PlyElement& element, MeshPart part) {
+        if (!builder_.may_add(0, element.count)) return builder_.too_many();
+        bool told = element.count == 0;
+        for (const PlyProperty& each : element.properties)
+            told = told || names_corners(each);
+        if (!told) return fail(ErrorCode::input, fmt::format("{}: its faces have no list vertex_indices", name_));
+        builder_.reserve(0, element.count);
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            for (const PlyProperty& each : element.properties) {
+                if (auto done = property(element, each, i); !done) return done;
+                if (!names_corners(each)) continue;
+                if (auto done = face(i, part); !done) return done;
+            }
+        }
+        return {};
+    }
+    static bool names_corners(const PlyProperty& property) {
+        return property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
+    }
+    Result<void> face(std::uint64_t index, MeshPart part) {
+        corners_.clear();
+        const auto count = static_cast<double>(builder_.vertices());
+        for (const double corner : list_) {
+            if (!(corner >= 0 && corner < count && corner == std::floor(corner)))
+                return fail(ErrorCode::input, fmt::format("{}: face {} names vertex {}, of {} (the first is 0)", here(),
+                                                          index, corner, count));
+            corners_.push_back(static_cast<std::uint32_t>(corner));
+        }
+        if (!builder_.add_polygon(corners_, part)) return builder_.too_many();
+        return {};
+    }
+
+    Result<void> other(const PlyElement& element) {
+        for (std::uint64_t i = 0; i < element.count; ++i)
+            for (const PlyProperty& each : element.properties)
+                if (auto done = property(element, each, i); !done) return done;
+        return {};
+    }
+
+    MeshBuilder& builder_;
+    std::string_view bytes_, name_;
+    PlyEncoding encoding_;
+    bool turned_;
+    std::size_t at_;
+    std::vector<double> list_;
+    std::vector<std::uint32_t> corners_;
+};
+
+}  // namespace
+
+Result<void> add_ply(MeshBuilder& builder, std::string_view bytes, std::string_view name, MeshPart part) {
+    bytes = without_byte_order_mark(bytes);
+    const auto header = parse_ply_header(bytes, name);
+    if (!header) return fail(header.error());
+    PlyBody body(builder, bytes, name, *header);
+    for (const PlyElement& element : header->elements)
+        if (auto done = body.read(element, part); !done) return done;
+    return {};
+}
+
+Result<CityFile> parse_ply(std::string_view bytes, std::string_view name, const CityFileSettings& settings) {
+    MeshBuilder builder(settings, name, "x,y,z");
+    builder.begin_mesh();
+    if (auto done = add_ply(builder, bytes, name, {}); !done) return fail(std::move(done.error()));
+    return builder.finish("ply");
+}
+
+}  // namespace skyloop

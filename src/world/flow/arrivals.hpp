@@ -1,0 +1,88 @@
+/// What reaches the antenna.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/core/units.hpp"
+#include "world/flow/earlier_records.hpp"
+#include "world/gnss/dop.hpp"
+#include "world/gnss/satellite.hpp"
+#include "world/gnss/signal.hpp"
+
+namespace skyloop {
+
+/// One carrier of a satellite as it reaches the antenna.
+struct SignalArrival {
+    Signal signal = Signal::l1;
+    Hertz carrier;
+    Seconds group_delay;      ///< of the satellite's hardware against its clock
+    Decibels relative_power;  ///< C/N0 over that of the satellite's first signal
+    bool arrives = true;      ///< false: nothing of this signal reaches the antenna
+};
+
+/// One ray beside the one that is tracked: reflected, or bent around an edge. What is tracked is the direct ray, or the
+/// strongest one when the direct one is blocked.
+struct Echo {
+    SkyDirection from;            ///< as the antenna hears it; elevations below 0 too
+    Metres excess;                ///< over the tracked ray; below 0 when that is not the first one to arrive
+    MetresPerSecond excess_rate;  ///< its derivative
+    double amplitude = 0;         ///< at the antenna's output and the first carrier, over that of the tracked ray
+    Angle phase;                  ///< by which it lags behind the tracked ray, beside what the excess does
+    int reflections = 0;
+};
+
+/// One satellite's signals as they reach the antenna: what delayed them and what weakened them, each cause by itself.
+struct Arrival {
+    SatelliteId id;
+    SkyDirection direction;                              ///< where the satellite stands
+    Metres range;                                        ///< geometric
+    MetresPerSecond range_rate;                          ///< of the geometric range
+    Seconds clock_bias;                                  ///< satellite clock − GPST, as broadcast
+    double clock_drift = 0;                              ///< s/s
+    InplaceVector<SignalArrival, most_signals> signals;  ///< the first one first
+
+    bool line_of_sight = true;
+    int paths = 1;                     ///< rays that arrive; 0: the satellite is hidden
+    int reflections = 0;               ///< of the tracked ray
+    Metres excess_path;                ///< of the tracked ray over the direct one
+    MetresPerSecond excess_rate;       ///< its derivative
+    bool echoes_known = false;         ///< `echoes` is all multipath that there is: a scene tells it
+    std::vector<Echo> echoes;          ///< strongest first
+    Metres signal_in_space_error;      ///< of orbit and clock against the broadcast, in the range
+    MetresPerSecond range_rate_error;  ///< its derivative
+    /// What of that makes up for a change of the broadcast record, with its rate and with changes that it leaves alone:
+    /// range and clock step by the opposite, and the signal goes on.
+    EarlierRecords earlier_records;
+    Metres false_range;                ///< what false signals add to the range, and a base station does not see
+    MetresPerSecond false_range_rate;  ///< its derivative
+    bool called_unhealthy = false;     ///< the satellite sends that it is not to be used, whatever its record says
+    /// A fault leaves too little of it for a sensor model, which has no loops that could lose it.
+    bool cut_off = false;
+    Metres iono_delay;                ///< of the code of the first signal; the carrier is advanced by as much
+    Metres false_iono_delay;          ///< what of that faults have added
+    MetresPerSecond false_iono_rate;  ///< its derivative, along a fault's ramps
+    Metres tropo_delay;
+    Decibels free_space_loss;
+    Decibels gas_loss;
+    Decibels cloud_loss;
+    Decibels rain_loss;
+    Decibels foliage_loss;
+    Decibels iono_loss;
+    Decibels reflection_loss;            ///< of the tracked ray, by reflections and at edges
+    Decibels antenna_gain;               ///< of the receiving antenna in this direction, dBic
+    Decibels power_offset;               ///< of this satellite against the nominal power, with what changes in time
+    Decibels interference_loss;          ///< of C/N0, by jamming
+    double amplitude_scintillation = 0;  ///< S4 at the first signal
+    Angle phase_scintillation;           ///< 1 σ, at the first signal
+    std::optional<DbHz>
+        cn0;  ///< of the first signal; nothing until a link budget has been made, or for a hidden satellite
+};
+
+/// One arrival for each satellite of the SkyView, in its order.
+struct Arrivals {
+    std::vector<Arrival> satellites;
+    MetresPerSecond antenna_speed;  ///< over the ground
+};
+
+}  // namespace skyloop

@@ -1,0 +1,74 @@
+/// What the device under test has configured.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <set>
+
+#include "base/core/units.hpp"
+#include "base/time/gps_time.hpp"
+#include "world/gnss/satellite.hpp"
+#include "world/gnss/signal.hpp"
+
+namespace skyloop {
+
+/// How the vehicle is expected to move (u-blox: CFG-NAV5 dynModel).
+enum class DynamicModel { portable, stationary, pedestrian, automotive, sea, airborne_1g, airborne_2g, airborne_4g };
+
+/// What a receiver still knows when it starts.
+enum class StartKind {
+    cold,  ///< nothing
+    warm,  ///< time, place and almanac, no ephemerides
+    hot,   ///< everything
+};
+
+/// A signal of one system.
+struct SystemSignal {
+    Constellation constellation = Constellation::gps;
+    Signal signal = Signal::l1;
+    auto operator<=>(const SystemSignal&) const = default;
+};
+
+/// Whether a receiver looks for a satellite; of other systems than SBAS always.
+/// @param mask bit i stands for PRN 120 + i (u-blox: CFG-SBAS-PRNSCANMASK); 0: all
+constexpr bool in_sbas_scan_mask(SatelliteId satellite, std::uint64_t mask) {
+    constexpr int first = 20, bits = 64;  // S20 is PRN 120
+    if (satellite.constellation != Constellation::sbas || mask == 0) return true;
+    const int bit = satellite.number - first;
+    return bit >= 0 && bit < bits && (mask >> bit & 1) != 0;
+}
+
+/// How far a receiver has come with the corrections of a base station.
+enum class CorrectionState { none, differential, rtk_float, rtk_fixed };
+
+/// The settings that measurement, solution and the world outside the firmware must respect.
+struct ReceiverSettings {
+    Nanoseconds navigation_period{1'000'000'000};
+    std::set<SystemSignal> signals{};  ///< that are tracked; empty: the first signal of every system
+    std::uint64_t sbas_scan_mask = 0;  ///< of in_sbas_scan_mask()
+    bool sbas_ranging = true;          ///< SBAS satellites are used as those of other systems
+    bool beidou_b1c = false;           ///< BeiDou's first signal is B1C, of BeiDou-3's MEO and IGSO satellites alone
+    std::size_t most_satellites = 0;   ///< that a solution takes, the strongest; 0: all
+    Angle elevation_mask = Angle::degrees(5);
+    DbHz minimum_cn0{6};  ///< of a satellite that is used
+    DynamicModel dynamic_model = DynamicModel::portable;
+    bool dynamic_limits = true;            ///< no fix beyond the limits of that model
+    Metres airborne_ceiling{80'000};       ///< of a fix with an airborne model, above mean sea level
+    MetresPerSecond static_hold_below{0};  ///< 0: never held
+    MetresPerSecond course_held_below{0.3};
+    StartKind start = StartKind::hot;  ///< what the receiver knew at its last start
+    int restarts = 0;                  ///< counts up with each restart; the receiver forgets what `start` says
+    bool navigating = true;            ///< false: stopped by its user, it tracks nothing
+    bool subframes = false;            ///< received subframes are wanted
+    CorrectionState corrections = CorrectionState::none;  ///< of those that a client hands in
+
+    [[nodiscard]] bool tracks(Constellation constellation, Signal signal) const {
+        return signals.empty() ? signal == first_signal(constellation) : signals.contains({constellation, signal});
+    }
+    [[nodiscard]] bool tracks(SatelliteId satellite, Signal signal) const {
+        if (beidou_b1c && signal == Signal::b1i && !sends_modern_signals(satellite)) return false;
+        return tracks(satellite.constellation, signal) && in_sbas_scan_mask(satellite, sbas_scan_mask);
+    }
+};
+
+}  // namespace skyloop

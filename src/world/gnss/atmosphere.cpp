@@ -1,0 +1,150 @@
+#include "world/gnss/atmosphere.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "world/gnss/constants.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// A cubic in semicircles, as the broadcast gives amplitude and period.
+double cubic(const std::array<double, 4>& c, double x) { return c[0] + x * (c[1] + x * (c[2] + x * c[3])); }
+
+// Niell's five latitudes and his coefficients there (Niell 1996, tables 3 and 4).
+constexpr std::array<double, 5> niell_latitudes_deg{15, 30, 45, 60, 75};
+using NiellTable = std::array<MappingCoefficients, 5>;
+constexpr NiellTable niell_hydrostatic_average{{
+    {1.2769934e-3, 2.9153695e-3, 62.610505e-3},
+    {1.2683230e-3, 2.9152299e-3, 62.837393e-3},
+    {1.2465397e-3, 2.9288445e-3, 63.721774e-3},
+    {1.2196049e-3, 2.9022565e-3, 63.824265e-3},
+    {1.2045996e-3, 2.9024912e-3, 64.258455e-3},
+}};
+constexpr NiellTable niell_hydrostatic_amplitude{{
+    {0.0, 0.0, 0.0},
+    {1.2709626e-5, 2.1414979e-5, 9.0128400e-5},
+    {2.6523662e-5, 3.0160779e-5, 4.3497037e-5},
+    {3.4000452e-5, 7.2562722e-5, 84.795348e-5},
+    {4.1202191e-5, 11.723375e-5, 170.37206e-5},
+}};
+constexpr NiellTable niell_wet_average{{
+    {5.8021897e-4, 1.4275268e-3, 4.3472961e-2},
+    {5.6794847e-4, 1.5138625e-3, 4.6729510e-2},
+    {5.8118019e-4, 1.4572752e-3, 4.3908931e-2},
+    {5.9727542e-4, 1.5007428e-3, 4.4626982e-2},
+    {6.1641693e-4, 1.7599082e-3, 5.4736038e-2},
+}};
+constexpr MappingCoefficients niell_height{2.53e-5, 5.49e-3, 1.14e-3};
+constexpr double niell_phase_day = 28;
+
+MappingCoefficients weighted_sum(const MappingCoefficients& x, double wx, const MappingCoefficients& y, double wy) {
+    return {wx * x.a + wy * y.a, wx * x.b + wy * y.b, wx * x.c + wy * y.c};
+}
+
+// Linear in |latitude| between the table's rows, constant beyond them.
+MappingCoefficients at_latitude(const NiellTable& table, Angle latitude) {
+    const double degrees = std::abs(latitude.deg());
+    if (degrees <= niell_latitudes_deg.front()) return table.front();
+    if (degrees >= niell_latitudes_deg.back()) return table.back();
+    const double step = niell_latitudes_deg[1] - niell_latitudes_deg[0];
+    const double row = (degrees - niell_latitudes_deg.front()) / step;
+    const auto below = std::min(static_cast<std::size_t>(row), table.size() - 2);
+    const double fraction = row - static_cast<double>(below);
+    return weighted_sum(table[below], 1 - fraction, table[below + 1], fraction);
+}
+
+}  // namespace
+
+KlobucharDelay klobuchar_delay(const KlobucharCoefficients& coefficients, const Geodetic& place,
+                               const SkyDirection& direction, GpsTime time) {
+    // Angles in semicircles, as the interface document counts them.
+    const double elevation = direction.elevation.rad() / pi;
+    const double earth_angle = 0.0137 / (elevation + 0.11) - 0.022;
+    const double latitude =
+        std::clamp(place.latitude.rad() / pi + earth_angle * std::cos(direction.azimuth.rad()), -0.416, 0.416);
+    const double longitude =
+        place.longitude.rad() / pi + earth_angle * std::sin(direction.azimuth.rad()) / std::cos(latitude * pi);
+    const double geomagnetic_latitude = latitude + 0.064 * std::cos((longitude - 1.617) * pi);
+    double local_time = std::fmod(43200 * longitude + week_and_tow(time).tow_seconds(), 86400.0);
+    if (local_time < 0) local_time += 86400;
+
+    const double period = std::max(72000.0, cubic(coefficients.beta, geomagnetic_latitude));
+    const double amplitude = std::max(0.0, cubic(coefficients.alpha, geomagnetic_latitude));
+    const double x = 2 * pi * (local_time - 50400) / period;
+    double vertical_s = 5e-9;
+    if (std::abs(x) < 1.57) vertical_s += amplitude * (1 - x * x / 2 + x * x * x * x / 24);
+
+    KlobucharDelay delay;
+    delay.slant_factor = 1 + 16 * std::pow(0.53 - elevation, 3);
+    delay.pierce_latitude = Angle::radians(latitude * pi);
+    delay.pierce_longitude = Angle::radians(std::remainder(longitude, 2.0) * pi);
+    delay.local_time = Seconds(local_time);
+    delay.vertical = Metres(speed_of_light * vertical_s);
+    delay.slant = delay.vertical * delay.slant_factor;
+    return delay;
+}
+
+Metres ionosphere_delay_at(Metres delay_l1, Hertz carrier) {
+    const double ratio = carrier_frequency_l1 / carrier.value();
+    return delay_l1 * (ratio * ratio);
+}
+
+double marini(const MappingCoefficients& m, Angle elevation) {
+    const double s = std::sin(elevation.rad());
+    return (1 + m.a / (1 + m.b / (1 + m.c))) / (s + m.a / (s + m.b / (s + m.c)));
+}
+
+MappingCoefficients niell_hydrostatic(Angle latitude, double day_of_year) {
+    // Winter comes half a year later in the south.
+    const double year_phase = (day_of_year - niell_phase_day) / 365.25 + (latitude.rad() < 0 ? 0.5 : 0.0);
+    return weighted_sum(at_latitude(niell_hydrostatic_average, latitude), 1,
+                        at_latitude(niell_hydrostatic_amplitude, latitude), -std::cos(2 * pi * year_phase));
+}
+
+MappingCoefficients niell_wet(Angle latitude) { return at_latitude(niell_wet_average, latitude); }
+
+double niell_height_correction(MslHeight height, Angle elevation) {
+    const double height_km = height.above_sea_level.value() / 1000;
+    return (1 / std::sin(elevation.rad()) - marini(niell_height, elevation)) * height_km;
+}
+
+namespace {
+
+// Marini's fraction and its slope over sin e.
+struct MariniTangent {
+    double value = 0, slope = 0;
+};
+
+MariniTangent marini_tangent(const MappingCoefficients& m, Angle elevation) {
+    const double s = std::sin(elevation.rad());
+    const double inner = s + m.c, middle = s + m.b / inner, outer = s + m.a / middle;
+    const double middle_slope = 1 - m.b / (inner * inner);
+    const double outer_slope = 1 - m.a / (middle * middle) * middle_slope;
+    const double value = marini(m, elevation);
+    return {value, -value / outer * outer_slope};
+}
+
+}  // namespace
+
+double height_correction_to_horizon(MslHeight height, Angle elevation) {
+    constexpr Angle lowest_fitted = Angle::degrees(3);
+    if (elevation >= lowest_fitted) return niell_height_correction(height, elevation);
+    const double from = std::sin(lowest_fitted.rad());
+    const double slope = -1 / (from * from) - marini_tangent(niell_height, lowest_fitted).slope;
+    const double height_km = height.above_sea_level.value() / 1000;
+    return niell_height_correction(height, lowest_fitted) + slope * (std::sin(elevation.rad()) - from) * height_km;
+}
+
+double niell_hydrostatic_mapping(const MappingSite& site, Angle elevation) {
+    return marini(niell_hydrostatic(site.latitude, site.day_of_year), elevation) +
+           niell_height_correction(site.height, elevation);
+}
+
+double niell_wet_mapping(Angle latitude, Angle elevation) { return marini(niell_wet(latitude), elevation); }
+
+}  // namespace skyloop

@@ -1,0 +1,37 @@
+/// Where a satellite is, how it moves, and what its clock shows.
+#pragma once
+
+#include "base/geo/frames.hpp"
+#include "world/gnss/ephemeris.hpp"
+
+namespace skyloop {
+
+/// State of a satellite at one instant, in the ECEF frame of that same instant.
+struct SatelliteState {
+    Position<Ecef> position;
+    Velocity<Ecef> velocity;
+    double clock_bias = 0;         ///< satellite clock − GPST, s, relativity included, group delay not
+    double clock_drift = 0;        ///< s/s, relativity included
+    double relativistic_bias = 0;  ///< the eccentricity term alone, s; 0 where the broadcast clock holds it
+};
+
+/// Orbit and clock by the user algorithm of IS-GPS-200 (20.3.3.4.3.1 and 20.3.3.3.3.1) with the constants of the
+/// record's system, velocity by its derivative (Remondi 2004). Geostationary BeiDou satellites by the B1I ICD 3.0,
+/// table 5-11. @param offset added to `time`, s, for transmission times finer than a nanosecond
+SatelliteState satellite_state(const KeplerEphemeris& ephemeris, GpsTime time, Seconds offset = Seconds(0));
+
+/// The simplified equations of motion of the ICD L1, L2 GLONASS 5.1, A.3.1.2, by the classical Runge-Kutta method in
+/// steps of at most 60 s; good within half an hour of toe. The clock is linear.
+SatelliteState satellite_state(const GlonassEphemeris& ephemeris, GpsTime time, Seconds offset = Seconds(0));
+
+/// A parabola in time (DO-229, A.4.4.11).
+SatelliteState satellite_state(const SbasEphemeris& ephemeris, GpsTime time, Seconds offset = Seconds(0));
+
+/// The same for a record of any system.
+SatelliteState satellite_state(const Ephemeris& ephemeris, GpsTime time, Seconds offset = Seconds(0));
+
+/// The same orbit and clock with `time` as its reference time where that makes near instants cheap: GLONASS records are
+/// integrated once. Others come back as they are.
+Ephemeris carried_to(const Ephemeris& ephemeris, GpsTime time);
+
+}  // namespace skyloop

@@ -1,0 +1,249 @@
+#include "world/gnss/signal.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "world/gnss/constants.hpp"
+#include "world/gnss/gps_blocks.hpp"
+
+namespace skyloop {
+namespace {
+
+// A delay of the first carrier as the second carrier of its pair has it: it grows with the square of the frequencies'
+// ratio.
+double second_carrier_delay(double delay, Signal second) {
+    const double ratio = carrier_frequency_l1 / carrier_frequency(second).value();
+    return delay * ratio * ratio;
+}
+
+// The broadcast tells the delay of S band, which is not emulated.
+double navic_l5_delay(double delay_of_s_band) {
+    constexpr double carrier_frequency_s = 2492.028e6;
+    const double ratio = carrier_frequency_s / carrier_frequency_l5;
+    return delay_of_s_band * ratio * ratio;
+}
+
+std::optional<double> galileo_delay(const KeplerEphemeris& record, Signal signal) {
+    const bool fnav = record.message == NavigationMessage::fnav;
+    const double delay = fnav ? record.tgd : record.tgd2;
+    if (signal == Signal::l1) return delay;
+    if (signal == (fnav ? Signal::l5 : Signal::e5b)) return second_carrier_delay(delay, signal);
+    return std::nullopt;
+}
+
+std::optional<double> beidou_delay(const KeplerEphemeris& record, Signal signal) {
+    if (signal == Signal::b1i) return record.tgd;
+    if (signal == Signal::e5b) return record.tgd2;
+    if (signal == Signal::b3i) return 0.0;
+    return std::nullopt;
+}
+
+std::optional<double> kepler_delay(const KeplerEphemeris& record, Signal signal) {
+    if (record.message == NavigationMessage::almanac) return 0.0;
+    switch (record.satellite.constellation) {
+        case Constellation::galileo:
+            return galileo_delay(record, signal);
+        case Constellation::beidou:
+            return beidou_delay(record, signal);
+        case Constellation::navic:
+            return signal == Signal::l5 ? std::optional(navic_l5_delay(record.tgd)) : std::nullopt;
+        default:
+            if (signal == Signal::l1) return record.tgd;
+            if (signal == Signal::l2) return second_carrier_delay(record.tgd, signal);
+            return std::nullopt;
+    }
+}
+
+std::optional<double> state_vector_delay(const GlonassEphemeris& record, Signal signal) {
+    if (signal == Signal::g1) return 0.0;
+    if (signal == Signal::g2) return -record.group_delay_l2;
+    return std::nullopt;
+}
+
+// What the combination of two signals without ionosphere is late against the record's clock, s.
+double pair_delay(const Ephemeris& record, Signal first, Signal second) {
+    const auto d1 = group_delay(record, first), d2 = group_delay(record, second);
+    if (!d1 || !d2) return 0;
+    const double ratio = carrier_frequency(first).value() / carrier_frequency(second).value();
+    const double square = ratio * ratio;
+    return (square * d1->value() - d2->value()) / (square - 1);
+}
+
+// The same of the pair that tables of clocks belong to.
+double table_clock_delay(const Ephemeris& record) {
+    switch (satellite_of(record).constellation) {
+        case Constellation::beidou:
+            return pair_delay(record, Signal::b1i, Signal::b3i);
+        case Constellation::glonass:
+            return pair_delay(record, Signal::g1, Signal::g2);
+        case Constellation::galileo: {
+            // Of E1 and E5a a record has what E1 alone differs from the pair, whichever pair its clock belongs to.
+            const auto* kepler = std::get_if<KeplerEphemeris>(&record);
+            if (kepler == nullptr || kepler->message == NavigationMessage::almanac) return 0;
+            return kepler_delay(*kepler, Signal::l1).value_or(0) - kepler->tgd;
+        }
+        default:
+            return 0;
+    }
+}
+
+constexpr int first_of_beidou_3 = 19;
+
+// B2I is BeiDou-2's alone: on that carrier BeiDou-3 sends B2b, another signal.
+bool sends_signal(SatelliteId satellite, Signal signal, GpsTime when) {
+    if (satellite.constellation == Constellation::gps) return gps_sends(satellite.number, signal, when);
+    if (satellite.constellation != Constellation::beidou) return true;
+    if (signal == Signal::e5b) return satellite.number < first_of_beidou_3;
+    return signal != Signal::l5 || sends_modern_signals(satellite);
+}
+
+}  // namespace
+
+bool sends_modern_signals(SatelliteId beidou) { return beidou.number >= first_of_beidou_3 && !is_beidou_geo(beidou); }
+
+Signal first_signal(Constellation constellation) {
+    switch (constellation) {
+        case Constellation::beidou:
+            return Signal::b1i;
+        case Constellation::glonass:
+            return Signal::g1;
+        case Constellation::navic:
+            return Signal::l5;
+        default:
+            return Signal::l1;
+    }
+}
+
+Hertz carrier_frequency(Signal signal, int frequency_channel) {
+    switch (signal) {
+        case Signal::l1:
+            return Hertz(carrier_frequency_l1);
+        case Signal::l2:
+            return Hertz(carrier_frequency_l2);
+        case Signal::l5:
+            return Hertz(carrier_frequency_l5);
+        case Signal::e5b:
+            return Hertz(1207.14e6);
+        case Signal::e6:
+            return Hertz(1278.75e6);
+        case Signal::b1i:
+            return Hertz(1561.098e6);
+        case Signal::b3i:
+            return Hertz(1268.52e6);
+        case Signal::g1:
+            return Hertz(1602e6 + 562.5e3 * frequency_channel);
+        case Signal::g2:
+            return Hertz(1246e6 + 437.5e3 * frequency_channel);
+    }
+    return Hertz(carrier_frequency_l1);
+}
+
+std::span<const Signal> emulated_signals(Constellation constellation) {
+    static constexpr std::array gps{Signal::l1, Signal::l2, Signal::l5};
+    static constexpr std::array galileo{Signal::l1, Signal::e5b, Signal::l5};
+    static constexpr std::array beidou{Signal::b1i, Signal::e5b, Signal::b3i, Signal::l5};
+    static constexpr std::array glonass{Signal::g1, Signal::g2};
+    static constexpr std::array sbas{Signal::l1};
+    static constexpr std::array navic{Signal::l5};
+    switch (constellation) {
+        case Constellation::galileo:
+            return galileo;
+        case Constellation::beidou:
+            return beidou;
+        case Constellation::glonass:
+            return glonass;
+        case Constellation::sbas:
+            return sbas;
+        case Constellation::navic:
+            return navic;
+        case Constellation::gps:
+        case Constellation::qzss:
+            break;
+    }
+    return gps;
+}
+
+std::optional<Signal> second_signal(Constellation constellation, SecondBand band) {
+    const bool l5 = band == SecondBand::l5;
+    switch (constellation) {
+        case Constellation::gps:
+        case Constellation::qzss:
+            return l5 ? Signal::l5 : Signal::l2;
+        case Constellation::galileo:
+        case Constellation::beidou:
+            return l5 ? Signal::l5 : Signal::e5b;
+        case Constellation::glonass:
+            return l5 ? std::nullopt : std::optional(Signal::g2);
+        case Constellation::sbas:
+        case Constellation::navic:
+            break;
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string_view> rinex_signal_code(Constellation constellation, Signal signal) {
+    struct Code {
+        Constellation constellation;
+        Signal signal;
+        std::string_view code;
+    };
+    using enum Constellation;
+    // Of several codes of a signal the one that u-blox receivers track: L2C long, E1-C, E5a-Q, E5b-Q, B2a's pilot.
+    static constexpr std::array<Code, 17> codes{{{gps, Signal::l1, "1C"},
+                                                 {gps, Signal::l2, "2L"},
+                                                 {gps, Signal::l5, "5Q"},
+                                                 {qzss, Signal::l1, "1C"},
+                                                 {qzss, Signal::l2, "2L"},
+                                                 {qzss, Signal::l5, "5Q"},
+                                                 {galileo, Signal::l1, "1C"},
+                                                 {galileo, Signal::e5b, "7Q"},
+                                                 {galileo, Signal::l5, "5Q"},
+                                                 {beidou, Signal::b1i, "2I"},
+                                                 {beidou, Signal::e5b, "7I"},
+                                                 {beidou, Signal::b3i, "6I"},
+                                                 {beidou, Signal::l5, "5P"},
+                                                 {glonass, Signal::g1, "1C"},
+                                                 {glonass, Signal::g2, "2C"},
+                                                 {sbas, Signal::l1, "1C"},
+                                                 {navic, Signal::l5, "5A"}}};
+    for (const Code& c : codes)
+        if (c.constellation == constellation && c.signal == signal) return c.code;
+    return std::nullopt;
+}
+
+TransmittedSignals transmitted_signals(const Ephemeris& record) {
+    const auto* glonass = std::get_if<GlonassEphemeris>(&record);
+    const int channel = glonass ? glonass->frequency_channel : 0;
+    TransmittedSignals signals;
+    const SatelliteId satellite = satellite_of(record);
+    for (const Signal signal : emulated_signals(satellite.constellation))
+        if (sends_signal(satellite, signal, toe_of(record)))
+            signals.push_back(
+                {signal, carrier_frequency(signal, channel), sent_group_delay(record, signal).value_or(Seconds(0))});
+    return signals;
+}
+
+std::optional<Seconds> group_delay(const Ephemeris& record, Signal signal) {
+    std::optional<double> delay;
+    if (const auto* kepler = std::get_if<KeplerEphemeris>(&record)) delay = kepler_delay(*kepler, signal);
+    if (const auto* glonass = std::get_if<GlonassEphemeris>(&record)) delay = state_vector_delay(*glonass, signal);
+    if (std::holds_alternative<SbasEphemeris>(record) && (signal == Signal::l1 || signal == Signal::l5)) delay = 0.0;
+    if (!delay) return std::nullopt;
+    return Seconds(*delay);
+}
+
+std::optional<Seconds> sent_group_delay(const Ephemeris& record, Signal signal) {
+    const auto told = group_delay(record, signal);
+    if (told) return told;
+    const auto emulated = emulated_signals(satellite_of(record).constellation);
+    if (std::find(emulated.begin(), emulated.end(), signal) == emulated.end()) return std::nullopt;
+    return Seconds(0);
+}
+
+std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal) {
+    const auto delay = group_delay(record, signal);
+    if (!delay) return std::nullopt;
+    return Seconds(delay->value() - table_clock_delay(record));
+}
+
+}  // namespace skyloop

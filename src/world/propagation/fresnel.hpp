@@ -1,0 +1,50 @@
+/// What smooth walls and grounds give back of a wave.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "base/core/units.hpp"
+
+namespace skyloop {
+
+/// Permittivity a f^b and conductivity c f^d S/m, f in GHz (ITU-R P.2040, table of material properties).
+struct SurfaceMaterial {
+    std::string_view name;
+    double a = 1, b = 0, c = 0, d = 0;
+};
+
+/// concrete, brick, glass, wood, marble, metal, dry-ground, medium-ground, wet-ground (ITU-R P.2040; MODELS.md A.8).
+std::span<const SurfaceMaterial> surface_materials();
+std::optional<SurfaceMaterial> surface_material(std::string_view name);
+
+/// Relative permittivity of a material without its losses.
+double permittivity_p2040(const SurfaceMaterial& material, Hertz carrier);
+/// Conductivity, S/m.
+double conductivity_p2040(const SurfaceMaterial& material, Hertz carrier);
+/// ε_r − jσ/(2π f ε0).
+std::complex<double> complex_permittivity_p2040(const SurfaceMaterial& material, Hertz carrier);
+
+/// Amplitude reflection coefficients of a half-space.
+struct FresnelReflection {
+    std::complex<double> te;  ///< field across the plane of incidence
+    std::complex<double> tm;  ///< field in the plane of incidence
+    /// Of a circular wave, into the same hand.
+    [[nodiscard]] std::complex<double> same_hand() const { return (te + tm) / 2.0; }
+    /// Of a circular wave, into the opposite hand: most of it, from steep incidence.
+    [[nodiscard]] std::complex<double> opposite_hand() const { return (tm - te) / 2.0; }
+    /// What a circular wave loses of its power, both hands counted.
+    [[nodiscard]] Decibels power_loss() const;
+};
+
+/// ITU-R P.2040, single interface from air; MODELS.md 7.10.
+/// @param permittivity of the half-space, complex  @param incidence from the normal, 0 … 90°
+FresnelReflection fresnel_reflection(std::complex<double> permittivity, Angle incidence);
+
+/// What roughness leaves of the mirrored amplitude, exp(−2 (2π s cos θ/λ)²) (MODELS.md 7.10).
+/// @param rms_height s of the surface
+double roughness_factor(Metres rms_height, Angle incidence, Hertz carrier);
+
+}  // namespace skyloop

@@ -1,0 +1,47 @@
+#include "world/propagation/modern_effects.hpp"
+
+#include <utility>
+
+#include "world/propagation/atmosphere_losses.hpp"
+#include "world/propagation/ionosphere_delay.hpp"
+#include "world/propagation/modern_link_budget.hpp"
+#include "world/propagation/scintillation_indices.hpp"
+#include "world/propagation/signal_in_space_error.hpp"
+#include "world/propagation/troposphere_delay.hpp"
+
+namespace skyloop {
+namespace {
+
+bool residual_wanted(const IonosphereParameters& parameters, std::optional<IonosphereModel> correction) {
+    if (parameters.residual != Choice::automatic) return parameters.residual == Choice::on;
+    return !correction || *correction == parameters.model;
+}
+
+}  // namespace
+
+Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const ModernPropagationParameters& parameters,
+                                                                       const ModernContext& context) {
+    auto truth = make_ionosphere_truth(parameters.ionosphere_model, context);
+    if (!truth) return fail(truth.error());
+    const AtmosphereParameters& air = context.atmosphere;
+    const auto galileo = context.galileo_correction ? context.galileo_correction : context.receiver_correction;
+    const ResidualReach residual{residual_wanted(parameters.ionosphere_model, galileo),
+                                 residual_wanted(parameters.ionosphere_model, context.receiver_correction)};
+    const TroposphereDelay::Site site{context.geoid, context.leap_seconds};
+
+    std::vector<std::unique_ptr<PropagationEffect>> effects;
+    effects.push_back(std::make_unique<SignalInSpaceError>(parameters.signal_in_space_model, parameters.signal_in_space,
+                                                           context.seed));
+    effects.push_back(std::make_unique<IonosphereDelay>(std::move(*truth), parameters, residual, context.seed));
+    effects.push_back(std::make_unique<TroposphereDelay>(parameters, air, site, context.seed));
+    effects.push_back(std::make_unique<GasLoss>(parameters.gas, context.geoid, context.gas_losses));
+    effects.push_back(std::make_unique<CloudLoss>(air.clouds, parameters.clouds, context.geoid));
+    effects.push_back(std::make_unique<RainLoss>(air.rain, parameters, context.geoid));
+    effects.push_back(std::make_unique<FoliageLoss>(parameters.loss_model, parameters.foliage));
+    effects.push_back(std::make_unique<ScintillationIndices>(parameters.scintillation_model, parameters.scintillation,
+                                                             context.leap_seconds));
+    effects.push_back(std::make_unique<ModernLinkBudget>(parameters, context.seed));
+    return effects;
+}
+
+}  // namespace skyloop

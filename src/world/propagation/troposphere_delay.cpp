@@ -1,0 +1,138 @@
+#include "world/propagation/troposphere_delay.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "detail/lowest_elevation.hpp"
+#include "detail/sea_level.hpp"
+#include "world/propagation/reference_atmosphere_p835.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr Nanoseconds troposphere_spacing = std::chrono::seconds(60);
+constexpr double vapour_scale_height_m = 2000;  // of the reference atmosphere (P.835, 1.2)
+
+// The share of the vapour over the sea that still lies above: what wanders of the delay wanders with it.
+double vapour_above(MslHeight height) {
+    return std::exp(-std::max(height.above_sea_level.value(), 0.0) / vapour_scale_height_m);
+}
+
+// A mapping function whose coefficients have been found for one epoch.
+struct EpochMapping {
+    MappingCoefficients hydrostatic, wet;
+    std::optional<MslHeight> height;  // of a mapping that is made for sea level
+
+    [[nodiscard]] TroposphereMapping at(Angle elevation) const {
+        TroposphereMapping mapping{marini(hydrostatic, elevation), marini(wet, elevation)};
+        if (height) mapping.hydrostatic += height_correction_to_horizon(*height, elevation);
+        return mapping;
+    }
+};
+
+EpochMapping epoch_mapping(const TroposphereParameters& parameters, const Geodetic& place, MslHeight height,
+                           const UtcTime& utc) {
+    const AnnualPhase phase = AnnualPhase::of(utc);
+    const auto vienna = [&](const Vmf1Coefficients& a, std::optional<MslHeight> correction) {
+        return EpochMapping{vmf1_hydrostatic(a.a_hydrostatic, place.latitude, phase), vmf1_wet(a.a_wet), correction};
+    };
+    switch (parameters.mapping) {
+        case TroposphereMappingModel::gmf:
+            return vienna(gmf_coefficients(place, phase), MslHeight{place.height.above_ellipsoid});
+        case TroposphereMappingModel::vmf1:
+            return vienna(parameters.vmf1, std::nullopt);
+        case TroposphereMappingModel::cosecant:  // has no coefficients
+            return {};
+        case TroposphereMappingModel::niell:
+            break;
+    }
+    return {niell_hydrostatic(place.latitude, day_of_year(utc)), niell_wet(place.latitude), height};
+}
+
+double vapour_pressure(double relative_humidity, Kelvin temperature) {
+    // The saturation pressure of the standard atmosphere (Saastamoinen 1972), so that the sources agree.
+    const double t = temperature.value();
+    return t > 100 ? 6.108 * relative_humidity * std::exp((17.15 * t - 4684) / (t - 38.45)) : 0;
+}
+
+double gradient_delay(const TroposphereParameters& parameters, const SkyDirection& direction) {
+    if (parameters.gradient_north.value() == 0 && parameters.gradient_east.value() == 0) return 0;
+    const double e = direction.elevation.rad(), azimuth = direction.azimuth.rad();
+    return (parameters.gradient_north.value() * std::cos(azimuth) +
+            parameters.gradient_east.value() * std::sin(azimuth)) /
+           (std::sin(e) * std::tan(e) + 0.0032);
+}
+
+}  // namespace
+
+Metres wet_delay_walk(const TroposphereParameters& parameters, const AtmosphereParameters& atmosphere) {
+    const bool tower = std::any_of(atmosphere.clouds.begin(), atmosphere.clouds.end(),
+                                   [](const CloudDeck& deck) { return deck.kind == "thunderstorm"; });
+    if (tower || atmosphere.rain.rate_mm_h >= parameters.thunderstorm_rain_mm_h) return parameters.walk_in_thunderstorm;
+    return atmosphere.rain.rate_mm_h > 0 ? parameters.walk_in_rain : parameters.walk;
+}
+
+SurfaceWeather troposphere_weather(const TroposphereParameters& parameters, const Geodetic& place, MslHeight height,
+                                   AnnualPhase phase) {
+    switch (parameters.weather) {
+        case WeatherSource::gpt: {
+            const GptWeather climate = gpt_weather(place, phase);
+            const Kelvin temperature(climate.temperature_celsius + 273.15);
+            return {climate.pressure_hpa, temperature, vapour_pressure(parameters.relative_humidity, temperature)};
+        }
+        case WeatherSource::given:
+            return {parameters.pressure_hpa, parameters.temperature,
+                    vapour_pressure(parameters.relative_humidity, parameters.temperature)};
+        case WeatherSource::p835: {
+            const ReferenceAir air =
+                reference_atmosphere_p835(height.above_sea_level, parameters.sea_level_vapour_g_m3);
+            return {air.pressure_hpa, air.temperature, air.vapour_pressure_hpa()};
+        }
+        case WeatherSource::standard:
+            break;
+    }
+    return standard_weather(height, parameters.relative_humidity);
+}
+
+TroposphereDelay::TroposphereDelay(const ModernPropagationParameters& parameters,
+                                   const AtmosphereParameters& atmosphere, Site site, std::uint64_t seed)
+    : parameters_(parameters.troposphere_model),
+      site_(std::move(site)),
+      factor_(parameters.troposphere.factor()),
+      residual_factor_(parameters.troposphere_residual.factor()),
+      wander_({parameters_.residual.value(), parameters_.residual_time}, troposphere_spacing,
+              parameters.troposphere_residual.stream(seed, "troposphere_residual.wander")),
+      walk_(KnottedProcess::walk(wet_delay_walk(parameters_, atmosphere).value() / 60, troposphere_spacing,
+                                 parameters.troposphere_residual.stream(seed, "troposphere_residual.walk"))) {}
+
+void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
+    assert(arrivals.satellites.size() == sky.satellites.size());
+    if (factor_ == 0 && residual_factor_ == 0) return;
+    const UtcTime utc = to_utc(truth.time, site_.leap_seconds);
+    const AnnualPhase phase = AnnualPhase::of(utc);
+    const MslHeight height = sea_level_height(truth.geodetic, site_.geoid);
+    ZenithDelay zenith = saastamoinen_zenith_delay(troposphere_weather(parameters_, truth.geodetic, height, phase),
+                                                   truth.geodetic.latitude, height);
+    zenith.hydrostatic = zenith.hydrostatic * factor_;
+    zenith.wet = zenith.wet * factor_;
+    if (residual_factor_ != 0)
+        zenith.wet += Metres(residual_factor_ * vapour_above(height) * (wander_.at(truth.time) + walk_.at(truth.time)));
+    const EpochMapping mapping = epoch_mapping(parameters_, truth.geodetic, height, utc);
+    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
+        const SkyDirection direction{sky.satellites[i].azimuth, std::max(sky.satellites[i].elevation, Angle())};
+        Metres& delay = arrivals.satellites[i].tropo_delay;
+        if (parameters_.mapping == TroposphereMappingModel::cosecant) {
+            // The very numbers of saastamoinen_delay(), bit by bit.
+            delay = zenith.total() / std::sin(above_horizon(direction.elevation).rad());
+        } else {
+            const TroposphereMapping m = mapping.at(direction.elevation);
+            delay = zenith.hydrostatic * m.hydrostatic + zenith.wet * m.wet;
+        }
+        if (factor_ != 0) delay += Metres(factor_ * gradient_delay(parameters_, direction));
+    }
+}
+
+}  // namespace skyloop

@@ -1,0 +1,308 @@
+#include "world/rinex/almanac_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "detail/fields.hpp"
+
+namespace skyloop {
+namespace rinex {
+namespace {
+
+bool contains_word(std::string_view line, std::string_view lower_case) {
+    const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+    return std::search(line.begin(), line.end(), lower_case.begin(), lower_case.end(), same) != line.end();
+}
+
+std::optional<Line> next_filled(LineReader& lines) {
+    std::optional<Line> line = lines.next();
+    while (line && words_of(line->text).empty())
+        line = lines.next();
+    return line;
+}
+
+tl::unexpected<Error> almanac_error(std::string_view name, int line, std::string_view found,
+                                    std::string_view expected) {
+    return fail(ErrorCode::input, fmt::format("{}:{}: found {}; expected {}", name, line, found, expected));
+}
+
+// What an almanac says of one number, and what can be.
+struct AlmanacRange {
+    std::string_view name;
+    double least, most;
+};
+
+enum AlmanacField {
+    prn,
+    health,
+    eccentricity,
+    toa,
+    inclination,
+    node_rate,
+    sqrt_a,
+    node,
+    perigee,
+    anomaly,
+    af0,
+    af1,
+    week
+};
+constexpr std::size_t almanac_field_count = 13;
+using AlmanacValues = std::array<double, almanac_field_count>;
+
+// In the order of a YUMA record; angles in radians.
+constexpr std::array<AlmanacRange, almanac_field_count> almanac_ranges{{
+    {"ID", 1, 202},
+    {"Health", 0, 511},
+    {"Eccentricity", 0, 0.5},
+    {"Time of Applicability", 0, static_cast<double>(seconds_per_week)},
+    {"Orbital Inclination", -7, 7},
+    {"Rate of Right Ascen", -1e-5, 1e-5},
+    {"SQRT(A)", 4000, 8000},
+    {"Right Ascen at Week", -7, 7},
+    {"Argument of Perigee", -7, 7},
+    {"Mean Anom", -7, 7},
+    {"Af0", -1, 1},
+    {"Af1", -1e-6, 1e-6},
+    {"week", 0, 8191},  // 13 bits, as CNAV counts them
+}};
+
+// The words for the first value that cannot be, or nothing.
+std::optional<std::string> impossible(const AlmanacValues& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const AlmanacRange& r = almanac_ranges[i];
+        if (!(values[i] >= r.least && values[i] <= r.most))
+            return fmt::format("{} between {} and {}", r.name, r.least, r.most);
+    }
+    constexpr int last_gps = 63, first_qzss = 193;
+    if (values[prn] > last_gps && values[prn] < first_qzss) return "a PRN of GPS (1 to 63) or QZSS (193 to 202)";
+    return std::nullopt;
+}
+
+KeplerEphemeris almanac_record(const AlmanacValues& v, GpsTime near) {
+    constexpr int qzss_offset = 192;
+    KeplerEphemeris e;
+    const int number = static_cast<int>(v[prn]);
+    e.satellite = number > qzss_offset ? SatelliteId{Constellation::qzss, number - qzss_offset}
+                                       : SatelliteId{Constellation::gps, number};
+    e.message = NavigationMessage::almanac;
+    const auto stated = static_cast<std::int64_t>(v[week]);
+    e.toe = to_gps_time(stated < 1024 ? resolve_week(stated, week_and_tow(near).week) : stated, v[toa]);
+    e.toc = e.toe;
+    e.health = static_cast<int>(v[health]);
+    e.e = v[eccentricity];
+    e.i0 = v[inclination];
+    e.omega_dot = v[node_rate];
+    e.sqrt_a = v[sqrt_a];
+    e.omega0 = v[node];
+    e.omega = v[perigee];
+    e.m0 = v[anomaly];
+    e.af0 = v[af0];
+    e.af1 = v[af1];
+    e.accuracy_m = -1;
+    return e;
+}
+
+// Unlike the columns of RINEX what stands here may be set with tabs.
+std::string_view without_tabs_around(std::string_view text) {
+    constexpr std::string_view blanks = " \t";
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+}
+
+// "******** Week 862 almanac for PRN-01 ********" and thirteen lines "name: value", in any order.
+class YumaReading {
+public:
+    YumaReading(std::string_view text, std::string_view name, GpsTime near) : lines_(text), name_(name), near_(near) {}
+
+    Result<std::vector<KeplerEphemeris>> read() {
+        for (std::optional<Line> line = next_filled(lines_); line; line = next_filled(lines_)) {
+            Result<void> taken;
+            if (line->text.find("**") != std::string_view::npos) {
+                taken = finish();
+                first_line_ = line->number;
+            } else {
+                taken = take(*line);
+            }
+            if (!taken) return fail(taken.error());
+        }
+        if (const Result<void> finished = finish(); !finished) return fail(finished.error());
+        if (records_.empty()) return almanac_error(name_, lines_.number(), "no record", "records of satellites");
+        return std::move(records_);
+    }
+
+private:
+    Result<void> take(const Line& line) {
+        const std::size_t colon = line.text.find(':');
+        const std::string_view key = without_tabs_around(line.text.substr(0, colon));
+        std::size_t field = 0;
+        while (field < almanac_field_count && !key.starts_with(almanac_ranges[field].name))
+            ++field;
+        if (colon == std::string_view::npos || field == almanac_field_count || first_line_ == 0)
+            return almanac_error(name_, line.number, in_quotes(line.text), "a line such as 'Eccentricity: 0.01'");
+        if (given_[field])
+            return almanac_error(name_, line.number,
+                                 fmt::format("'{}' for the second time", almanac_ranges[field].name),
+                                 "one of each in a record");
+        const std::string_view text = without_tabs_around(line.text.substr(colon + 1));
+        const std::optional<double> value = real_field(text);
+        if (!value || text.empty())
+            return almanac_error(name_, line.number, in_quotes(text),
+                                 fmt::format("a number, {}", almanac_ranges[field].name));
+        given_[field] = true;
+        values_[field] = *value;
+        return {};
+    }
+
+    // Ends the record at hand.
+    Result<void> finish() {
+        if (first_line_ == 0) return {};
+        for (std::size_t i = 0; i < given_.size(); ++i)
+            if (!given_[i])
+                return almanac_error(name_, first_line_, fmt::format("a record without '{}'", almanac_ranges[i].name),
+                                     "a record of 13 lines");
+        if (const auto words = impossible(values_))
+            return almanac_error(name_, first_line_, "a record that no satellite sends", *words);
+        records_.push_back(almanac_record(values_, near_));
+        given_ = {};
+        return {};
+    }
+
+    LineReader lines_;
+    std::string_view name_;
+    GpsTime near_;
+    int first_line_ = 0;  // of the record at hand
+    AlmanacValues values_{};
+    std::array<bool, almanac_field_count> given_{};
+    std::vector<KeplerEphemeris> records_;
+};
+
+// Number of records and a name; week and time of applicability; then eight lines for each satellite. Angles in
+// semicircles, the inclination as its difference from 0.3.
+class SemReading {
+public:
+    SemReading(std::string_view text, std::string_view name, GpsTime near) : lines_(text), name_(name), near_(near) {}
+
+    Result<std::vector<KeplerEphemeris>> read() {
+        const auto count = numbers<1>("the number of records", 2);
+        if (!count) return fail(count.error());
+        const auto time = numbers<2>("the week and the time of applicability");
+        if (!time) return fail(time.error());
+        values_[week] = (*time)[0];
+        values_[toa] = (*time)[1];
+        std::vector<KeplerEphemeris> records;
+        while (const std::optional<Line> ahead = peek()) {
+            if (const Result<void> taken = satellite(); !taken) return fail(taken.error());
+            if (const auto words = impossible(values_))
+                return almanac_error(name_, ahead->number, "a record that no satellite sends", *words);
+            records.push_back(almanac_record(values_, near_));
+        }
+        if (static_cast<double>(records.size()) != (*count)[0])
+            return almanac_error(name_, lines_.number(), fmt::format("{} records", records.size()),
+                                 fmt::format("{}, as the first line says", (*count)[0]));
+        if (records.empty()) return almanac_error(name_, 1, "no records", "one at least");
+        return records;
+    }
+
+private:
+    std::optional<Line> peek() {
+        LineReader ahead = lines_;
+        return next_filled(ahead);
+    }
+
+    // The next line that is not empty: `count` numbers, and at most `most` words in all.
+    template <std::size_t count>
+    Result<std::array<double, count>> numbers(std::string_view what, std::size_t most = count) {
+        const std::optional<Line> line = next_filled(lines_);
+        if (!line) return almanac_error(name_, lines_.number(), "the end of the file", what);
+        const std::vector<std::string_view> words = words_of(line->text);
+        std::array<double, count> values{};
+        bool good = words.size() >= count && words.size() <= most;
+        for (std::size_t i = 0; good && i < count; ++i) {
+            const std::optional<double> value = real_field(words[i]);
+            good = value.has_value();
+            values[i] = value.value_or(0);
+        }
+        if (!good) return almanac_error(name_, line->number, in_quotes(line->text), what);
+        return values;
+    }
+
+    Result<void> satellite() {
+        constexpr double semicircle = std::numbers::pi;
+        const auto id = numbers<1>("a PRN");
+        if (!id) return fail(id.error());
+        for (const std::string_view ignored : {"a satellite's vehicle number", "an accuracy index"})
+            if (const auto value = numbers<1>(ignored); !value) return fail(value.error());
+        const auto shape = numbers<3>("three numbers: eccentricity, inclination and node rate");
+        if (!shape) return fail(shape.error());
+        const auto plane = numbers<3>("three numbers: root of the semi-major axis, node and perigee");
+        if (!plane) return fail(plane.error());
+        const auto clock = numbers<3>("three numbers: mean anomaly, af0 and af1");
+        if (!clock) return fail(clock.error());
+        const auto bits = numbers<1>("the health");
+        if (!bits) return fail(bits.error());
+        if (const auto configuration = numbers<1>("the satellite's configuration"); !configuration)
+            return fail(configuration.error());
+        values_[prn] = (*id)[0];
+        values_[health] = (*bits)[0];
+        values_[eccentricity] = (*shape)[0];
+        values_[inclination] = (0.3 + (*shape)[1]) * semicircle;
+        values_[node_rate] = (*shape)[2] * semicircle;
+        values_[sqrt_a] = (*plane)[0];
+        values_[node] = (*plane)[1] * semicircle;
+        values_[perigee] = (*plane)[2] * semicircle;
+        values_[anomaly] = (*clock)[0] * semicircle;
+        values_[af0] = (*clock)[1];
+        values_[af1] = (*clock)[2];
+        return {};
+    }
+
+    LineReader lines_;
+    std::string_view name_;
+    GpsTime near_;
+    AlmanacValues values_{};
+};
+
+bool is_yuma(std::string_view text) {
+    LineReader lines(text);
+    const std::optional<Line> first = next_filled(lines);
+    return first && first->text.starts_with('*') && contains_word(first->text, "almanac");
+}
+
+bool is_whole(std::string_view word) {
+    return !word.empty() && std::all_of(word.begin(), word.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+bool is_sem(std::string_view text) {
+    LineReader lines(text);
+    const std::optional<Line> first = next_filled(lines);
+    const std::optional<Line> second = next_filled(lines);
+    if (!first || !second) return false;
+    const auto head = words_of(first->text);
+    const auto time = words_of(second->text);
+    return head.size() <= 2 && is_whole(head[0]) && time.size() == 2 && is_whole(time[0]) && is_whole(time[1]);
+}
+
+}  // namespace
+}  // namespace rinex
+
+bool is_almanac(std::string_view text) {
+    const std::string_view unmarked = rinex::without_byte_order_mark(text);
+    return rinex::is_yuma(unmarked) || rinex::is_sem(unmarked);
+}
+
+Result<std::vector<KeplerEphemeris>> read_almanac(std::string_view text, std::string_view name, GpsTime near) {
+    text = rinex::without_byte_order_mark(text);
+    if (rinex::is_yuma(text)) return rinex::YumaReading(text, name, near).read();
+    if (rinex::is_sem(text)) return rinex::SemReading(text, name, near).read();
+    return fail(ErrorCode::input, fmt::format("{}:1: found no almanac; expected YUMA or SEM", name));
+}
+
+}  // namespace skyloop

@@ -1,0 +1,43 @@
+/// One ephemeris in RINEX text.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <tl/expected.hpp>
+
+#include "record_fields.hpp"
+#include "world/gnss/ephemeris.hpp"
+
+namespace skyloop::rinex {
+
+/// How many lines a record has: the epoch with the clock, then orbit lines of four fields.
+struct RecordLength {
+    std::size_t least = 8;
+    std::size_t most = 8;
+};
+inline constexpr std::size_t longest_record = 8;
+/// GLONASS records have a fifth line from version 3.05 on.
+constexpr RecordLength record_length(Constellation constellation) {
+    if (constellation == Constellation::glonass) return {4, 5};
+    if (constellation == Constellation::sbas) return {4, 4};
+    return {8, 8};
+}
+
+/// What tells how a record is to be read.
+struct RecordKind {
+    SatelliteId satellite;
+    int major = 3;                             ///< version
+    std::optional<NavigationMessage> message;  ///< nothing: the record itself tells
+};
+
+/// True for a line on which a record begins: the lines that continue one begin with spaces.
+bool begins_record(std::string_view line, int major);
+
+/// The satellite that a record's first line names, or nothing. @param system of a version 2 file
+std::optional<SatelliteId> record_satellite(std::string_view line, int major, Constellation system);
+
+/// Reads the lines of one record.
+tl::expected<Ephemeris, Defect> read_record(const RecordKind& kind, std::span<const Line> lines);
+
+}  // namespace skyloop::rinex

@@ -1,0 +1,208 @@
+#include "world/rinex/navigation_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+
+#include "base/core/text_file.hpp"
+#include "detail/defect_tally.hpp"
+#include "detail/fields.hpp"
+#include "detail/navigation_block.hpp"
+#include "detail/navigation_header.hpp"
+#include "detail/navigation_record.hpp"
+
+namespace skyloop {
+namespace rinex {
+namespace {
+
+class NavigationReading {
+public:
+    NavigationReading(std::string_view text, std::string_view name) : lines_(text), name_(name) {}
+
+    Result<NavigationFile> read() {
+        Result<NavigationHeader> header = read_header(lines_, name_);
+        if (!header) return fail(header.error());
+        major_ = header->major();
+        file_.version = header->version;
+        system_ = header->system;
+        file_.ionosphere = header->ionosphere;
+        file_.time_corrections = std::move(header->time_corrections);
+        file_.leap_seconds = header->leap_seconds;
+        file_.warnings = std::move(header->warnings);
+
+        advance();
+        while (line_) {
+            if (major_ >= 4)
+                block();
+            else
+                record();
+        }
+        if (file_.records.empty()) return nothing_read();
+        warn();
+        return std::move(file_);
+    }
+
+private:
+    void advance() {
+        do
+            line_ = lines_.next();
+        while (line_ && is_blank(line_->text));
+    }
+    // A line that continues the record at hand.
+    [[nodiscard]] bool continues() const { return line_ && !begins_record(line_->text, major_); }
+    void skip_record() {
+        do
+            advance();
+        while (continues());
+    }
+
+    // Version 4: "> EPH G02 LNAV" and the lines up to the next ">".
+    void block() {
+        if (!line_->text.starts_with('>')) return stray();
+        const Line first = *line_;
+        const BlockHead head = block_head(first.text);
+        advance();
+        if (head.type == "EPH" && head.satellite && line_ && begins_record(line_->text, major_) &&
+            !line_->text.starts_with('>')) {
+            if (const auto message = message_of_block(head)) return record(message);
+        }
+        std::vector<Line> body;
+        for (; line_ && !line_->text.starts_with('>'); advance())
+            if (body.size() < longest_record) body.push_back(*line_);
+        other_block(first, head, body);
+    }
+
+    void other_block(const Line& first, const BlockHead& head, std::span<const Line> body) {
+        if (head.type == "STO") {
+            auto correction = read_time_offset(body);
+            if (correction) return file_.time_corrections.push_back(std::move(*correction));
+            return tally(file_.skipped.defective, defective_, first.number, "a damaged time offset block",
+                         "an epoch, the name of an offset, and three numbers in two lines");
+        }
+        if (is_read_ionosphere(head)) {
+            if (!take_ionosphere(head, body, file_.ionosphere))
+                tally(file_.skipped.defective, defective_, first.number, "a damaged ionosphere block",
+                      "an epoch and the coefficients of the model");
+            return;
+        }
+        if (head.type == "EPH" && head.satellite && !head.message.empty() && !message_of_block(head))
+            ++file_.skipped.messages[std::string(head.message)];
+        else if (head.type == "EOP" || head.type == "ION")
+            ++file_.skipped.messages[std::string(head.type)];
+        else
+            tally(file_.skipped.defective, defective_, first.number, in_quotes(first.text),
+                  "a block header such as '> EPH G02 LNAV' and a record");
+    }
+
+    void record(std::optional<NavigationMessage> message = std::nullopt) {
+        if (continues()) return stray();
+        const Line first = *line_;
+        const std::optional<SatelliteId> satellite = record_satellite(first.text, major_, system_);
+        if (!satellite) {
+            tally(file_.skipped.defective, defective_, first.number, in_quotes(columns(first.text, 0, 3)),
+                  major_ == 2 ? "a satellite number" : "a satellite such as 'G07'");
+            return skip_record();
+        }
+        ephemeris({*satellite, major_, message}, first);
+    }
+
+    void ephemeris(const RecordKind& kind, const Line& first) {
+        const RecordLength length = record_length(kind.satellite.constellation);
+        std::array<Line, longest_record> lines{first};
+        std::size_t count = 1;
+        // Within a record a blank line is one whose fields are all blank.
+        for (line_ = lines_.next(); count < length.most && continues(); line_ = lines_.next())
+            lines[count++] = *line_;
+        if (line_ && is_blank(line_->text)) advance();
+        if (count < length.least)
+            return tally(file_.skipped.incomplete, incomplete_, first.number,
+                         fmt::format("a record of {} cut off after {} of its lines", to_string(kind.satellite), count),
+                         fmt::format("{} lines", length.least));
+        auto read = read_record(kind, std::span(lines.data(), count));
+        if (read) return file_.records.push_back(std::move(*read));
+        ++file_.skipped.defective;
+        // Many records may fail; only the first needs words.
+        defective_.add_with([&] {
+            return fmt::format("{}:{}:{}: found {}; expected {}", name_, read.error().line, read.error().column,
+                               read.error().found, read.error().expected);
+        });
+    }
+
+    void stray() {
+        stray_.add(sentence(line_->number, in_quotes(line_->text), "the first line of a record"));
+        advance();
+    }
+
+    [[nodiscard]] std::string sentence(int line, std::string_view found, std::string_view expected) const {
+        return fmt::format("{}:{}: found {}; expected {}", name_, line, found, expected);
+    }
+    void tally(int& counter, DefectTally& tally, int line, std::string_view found, std::string_view expected) const {
+        ++counter;
+        tally.add(sentence(line, found, expected));
+    }
+
+    Result<NavigationFile> nothing_read() const {
+        for (const DefectTally* t : {&defective_, &incomplete_, &stray_})
+            if (t->count > 0) return fail(ErrorCode::input, t->first + "; no record could be read");
+        if (!file_.skipped.messages.empty())
+            return fail(ErrorCode::input,
+                        sentence(lines_.number(), fmt::format("only messages of other kinds ({})", messages()),
+                                 "ephemerides of LNAV, INAV, FNAV, D1, D2, FDMA or SBAS"));
+        if (!file_.warnings.empty()) return fail(ErrorCode::input, file_.warnings.front() + "; no record follows");
+        return fail(ErrorCode::input,
+                    sentence(lines_.number(), "the end of the file and no ephemeris", "records after the header"));
+    }
+
+    void warn() {
+        const auto defects = [&](const DefectTally& t, std::string_view what) {
+            if (t.count == 0) return;
+            file_.warnings.push_back(
+                fmt::format("{}; {} skipped{}", t.first, what,
+                            t.count > 1 ? fmt::format(", and {} more likewise", t.count - 1) : ""));
+        };
+        defects(defective_, "record");
+        defects(incomplete_, "record");
+        defects(stray_, "line");
+        if (!file_.skipped.messages.empty())
+            file_.warnings.push_back(fmt::format("{}: skipped messages of other kinds ({})", name_, messages()));
+    }
+    [[nodiscard]] std::string messages() const {
+        std::vector<std::string> parts;
+        for (const auto& [message, count] : file_.skipped.messages)
+            parts.push_back(fmt::format("{} {}", count, in_quotes(message)));
+        return fmt::format("{}", fmt::join(parts, ", "));
+    }
+
+    LineReader lines_;
+    std::string_view name_;
+    int major_ = 2;
+    Constellation system_ = Constellation::gps;
+    std::optional<Line> line_;
+    NavigationFile file_;
+    DefectTally defective_;
+    DefectTally incomplete_;
+    DefectTally stray_;
+};
+
+}  // namespace
+}  // namespace rinex
+
+std::map<Constellation, int> NavigationFile::counts() const {
+    std::map<Constellation, int> counts;
+    for (const Ephemeris& record : records)
+        ++counts[satellite_of(record).constellation];
+    return counts;
+}
+
+Result<NavigationFile> read_navigation(std::string_view text, std::string_view name) {
+    return rinex::NavigationReading(rinex::without_byte_order_mark(text), name).read();
+}
+
+Result<NavigationFile> read_navigation_file(const std::filesystem::path& path) {
+    const Result<std::string> text = read_text_file(path);
+    if (!text) return fail(text.error());
+    return read_navigation(*text, path.string());
+}
+
+}  // namespace skyloop

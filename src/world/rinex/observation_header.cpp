@@ -1,0 +1,268 @@
+#include "detail/observation_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace skyloop::rinex {
+namespace {
+
+constexpr std::string_view what_observations = "observations (RINEX 2.00-2.12, 3.00-3.05 or 4.00-4.02)";
+constexpr std::size_t most_warnings = 20;
+
+std::size_t index_of(Constellation system) { return static_cast<std::size_t>(system); }
+
+bool observation_version(double version) {
+    return (version >= 2.0 && version < 2.125) || (version >= 3.0 && version < 3.055) ||
+           (version >= 4.0 && version < 4.025);
+}
+
+std::string time_system_of(Constellation system) {
+    switch (system) {
+        case Constellation::glonass:
+            return "GLO";
+        case Constellation::galileo:
+            return "GAL";
+        case Constellation::beidou:
+            return "BDT";
+        case Constellation::qzss:
+            return "QZS";
+        case Constellation::navic:
+            return "IRN";
+        default:
+            return "GPS";
+    }
+}
+
+tl::unexpected<Error> observation_error(std::string_view name, int line, std::string_view found,
+                                        std::string_view expected) {
+    return fail(ErrorCode::input, fmt::format("{}:{}: found {}; expected {}", name, line, found, expected));
+}
+
+}  // namespace
+
+Result<void> ObservationHeaderReading::read(LineReader& lines) {
+    std::optional<Line> line = lines.next();
+    while (line && is_blank(line->text))
+        line = lines.next();
+    if (!line) return observation_error(name_, lines.number(), "an empty file", what_observations);
+    if (auto version = version_line(*line); !version) return version;
+    while ((line = lines.next())) {
+        if (header_label(line->text) != "END OF HEADER") {
+            take(*line);
+            continue;
+        }
+        finish_layouts();
+        const bool typed =
+            std::any_of(layouts_.begin(), layouts_.end(), [](const SystemLayout& l) { return !l.types.empty(); });
+        if (typed) return {};
+        return observation_error(name_, line->number, "the end of the header",
+                                 major() == 2 ? "'# / TYPES OF OBSERV' before it" : "'SYS / # / OBS TYPES' before it");
+    }
+    return observation_error(name_, lines.number(), "the end of the file within the header",
+                             "'END OF HEADER' and epochs");
+}
+
+Result<void> ObservationHeaderReading::version_line(const Line& line) {
+    const std::string_view label = header_label(line.text);
+    if (label.starts_with("CRINEX VERS"))
+        return observation_error(name_, line.number, "a compact RINEX file (Hatanaka)",
+                                 "plain RINEX observations; crx2rnx unpacks it");
+    if (label != "RINEX VERSION / TYPE")
+        return observation_error(name_, line.number, line.text.empty() ? "an empty line" : in_quotes(line.text),
+                                 "a RINEX header, its label 'RINEX VERSION / TYPE' in columns 61-80");
+    const std::string_view field = columns(line.text, 0, 20);
+    const std::optional<double> version = real_field(field);
+    if (!version || !observation_version(*version))
+        return observation_error(name_, line.number, fmt::format("RINEX version {}", in_quotes(field)),
+                                 what_observations);
+    if (line.text[20] != 'O')
+        return observation_error(name_, line.number, fmt::format("file type {}", in_quotes(columns(line.text, 20, 1))),
+                                 what_observations);
+    facts_.version = *version;
+    system_ = constellation_from_letter(line.text[40]).value_or(Constellation::gps);
+    facts_.time_system = time_system_of(system_);
+    return {};
+}
+
+void ObservationHeaderReading::change(const Line& line) {
+    take(line);
+    finish_layouts();
+}
+
+const SystemLayout* ObservationHeaderReading::layout(Constellation system) const {
+    const SystemLayout& layout = layouts_[index_of(system)];
+    return layout.types.empty() ? nullptr : &layout;
+}
+
+void ObservationHeaderReading::take(const Line& line) {
+    const std::string_view label = header_label(line.text);
+    if (!take_types(line, label)) take_facts(line, label);
+}
+
+bool ObservationHeaderReading::take_types(const Line& line, std::string_view label) {
+    if (label == "# / TYPES OF OBSERV" && major() == 2) return types_of_version_2(line), true;
+    if (label == "SYS / # / OBS TYPES" && major() >= 3) return types_of_version_3(line), true;
+    if (label == "SYS / SCALE FACTOR" && major() >= 3) return scale_factors(line), true;
+    return false;
+}
+
+void ObservationHeaderReading::take_facts(const Line& line, std::string_view label) {
+    const auto words = [&](std::size_t first, std::size_t width) {
+        return std::string(trimmed(columns(columns(line.text, 0, 60), first, width)));
+    };
+    if (label == "MARKER NAME") facts_.marker = words(0, 60);
+    if (label == "REC # / TYPE / VERS") facts_.receiver = words(20, 20);
+    if (label == "ANT # / TYPE") facts_.antenna = words(20, 20);
+    if (label == "APPROX POSITION XYZ" || label == "ANTENNA: DELTA H/E/N") position(line);
+    if (label == "LEAP SECONDS") leap_seconds(line);
+    if (label == "TIME OF FIRST OBS") time_system(line);
+    if (label == "GLONASS SLOT / FRQ #") glonass_channels(line);
+    if (label != "INTERVAL") return;
+    const std::optional<double> seconds = real_field(columns(line.text, 0, 10));
+    if (!seconds || *seconds < 0) return warn(line, in_quotes(columns(line.text, 0, 10)), "an interval in seconds");
+    if (*seconds > 0) facts_.interval = Seconds(*seconds);
+}
+
+void ObservationHeaderReading::types_of_version_2(const Line& line) {
+    // One list for all systems; it is kept with GPS and copied at the end.
+    const std::optional<int> count = whole_field(columns(line.text, 0, 6));
+    if (!count || *count < 0 || *count > 999)
+        return warn(line, in_quotes(columns(line.text, 0, 6)), "a number of observation types");
+    if (!is_blank(columns(line.text, 0, 6))) {
+        for (SystemLayout& l : layouts_)
+            l = {};
+        types_of_ = Constellation::gps;
+        layouts_[index_of(*types_of_)].announced = static_cast<std::size_t>(*count);
+    }
+    add_types(line, 10, 6, 2, 9);
+}
+
+void ObservationHeaderReading::types_of_version_3(const Line& line) {
+    if (!is_blank(columns(line.text, 0, 1))) {
+        types_of_ = constellation_from_letter(line.text[0]);
+        const std::optional<int> count = whole_field(columns(line.text, 3, 3));
+        if (!types_of_ || !count || *count < 0) {
+            types_of_.reset();
+            return warn(line, in_quotes(columns(line.text, 0, 6)), "a system and its number of observation types");
+        }
+        layouts_[index_of(*types_of_)] = {};
+        layouts_[index_of(*types_of_)].announced = static_cast<std::size_t>(*count);
+    }
+    add_types(line, 7, 4, 3, 13);
+}
+
+void ObservationHeaderReading::add_types(const Line& line, std::size_t first, std::size_t step, std::size_t width,
+                                         std::size_t most) {
+    if (!types_of_) return warn(line, in_quotes(columns(line.text, 0, 60)), "a list of types that begins with a count");
+    auto& [types, announced, scale, signals] = layouts_[index_of(*types_of_)];
+    const std::string_view content = columns(line.text, 0, 60);
+    for (std::size_t i = 0; i < most && types.size() < announced; ++i) {
+        const std::string_view type = trimmed(columns(content, first + step * i, width));
+        if (type.empty()) break;
+        types.emplace_back(type);
+    }
+    changed_ = true;
+}
+
+void ObservationHeaderReading::scale_factors(const Line& line) {
+    if (!is_blank(columns(line.text, 0, 1))) {
+        scaled_ = constellation_from_letter(line.text[0]);
+        const std::optional<int> factor = whole_field(columns(line.text, 2, 4));
+        factor_ = factor.value_or(0);
+        if (!scaled_ || factor_ < 1) {
+            scaled_.reset();
+            return warn(line, in_quotes(columns(line.text, 0, 6)), "a system and a scale factor of 1 or more");
+        }
+    }
+    if (!scaled_) return;
+    SystemLayout& layout = layouts_[index_of(*scaled_)];
+    layout.scale.resize(layout.types.size(), 1.0);
+    std::vector<std::string_view> named = words_of(columns(columns(line.text, 0, 60), 6, 54));
+    if (!is_blank(columns(line.text, 0, 1)) && !named.empty()) {
+        constexpr int on_a_line = 12;
+        const std::optional<int> count = whole_field(named.front());
+        named.erase(named.begin());
+        if (!count || std::min(*count, on_a_line) != static_cast<int>(named.size()))
+            warn(line, fmt::format("{} observation types", named.size()), "as many as their count in front of them");
+    }
+    if (named.empty()) return layout.scale.assign(layout.types.size(), factor_);
+    for (const std::string_view name : named) {
+        const auto type = std::find_if(layout.types.begin(), layout.types.end(),
+                                       [&](const std::string& one) { return trimmed(one) == name; });
+        if (type == layout.types.end())
+            warn(line, in_quotes(name), fmt::format("an observation type of {}", constellation_name(*scaled_)));
+        else
+            layout.scale[static_cast<std::size_t>(type - layout.types.begin())] = factor_;
+    }
+}
+
+// Lists of types are used when they are complete: at the end of the header, or before the next epoch.
+void ObservationHeaderReading::finish_layouts() {
+    if (!changed_) return;
+    changed_ = false;
+    for (std::size_t i = 0; i < layouts_.size(); ++i)
+        if (layouts_[i].types.size() != layouts_[i].announced)
+            facts_.warnings.push_back(fmt::format("{}: found {} observation types of {}; expected the {} announced",
+                                                  name_, layouts_[i].types.size(), constellation_names[i],
+                                                  layouts_[i].announced));
+    if (major() == 2) std::fill(layouts_.begin() + 1, layouts_.end(), SystemLayout(layouts_[0]));
+    for (std::size_t i = 0; i < layouts_.size(); ++i) {
+        SystemLayout& layout = layouts_[i];
+        layout.scale.resize(layout.types.size(), 1.0);
+        layout.signals = signal_columns(static_cast<Constellation>(i), layout.types, facts_.version);
+    }
+}
+
+void ObservationHeaderReading::glonass_channels(const Line& line) {
+    const std::string_view content = columns(line.text, 0, 60);
+    for (std::size_t at = 4; at < 60; at += 7) {
+        const std::string_view entry = columns(content, at, 6);
+        if (is_blank(entry)) continue;
+        const std::optional<SatelliteId> slot = parse_satellite(columns(entry, 0, 3));
+        const std::optional<int> channel = whole_field(columns(entry, 3, 3));
+        if (!slot || slot->constellation != Constellation::glonass || !channel || *channel < -13 || *channel > 24)
+            return warn(line, in_quotes(entry), "a slot and its channel such as 'R03  5'");
+        facts_.glonass_channels[slot->number] = *channel;
+    }
+}
+
+void ObservationHeaderReading::position(const Line& line) {
+    std::array<double, 3> v{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::string_view field = columns(line.text, 14 * i, 14);
+        const std::optional<double> value = real_field(field);
+        if (!value) return warn(line, in_quotes(field), "three lengths in metres");
+        v[i] = *value;
+    }
+    if (header_label(line.text) == "ANTENNA: DELTA H/E/N")
+        facts_.antenna_delta = {Metres(v[0]), Metres(v[1]), Metres(v[2])};
+    else if (v[0] != 0 || v[1] != 0 || v[2] != 0)
+        facts_.approximate_position = Position<Ecef>(v[0], v[1], v[2]);
+}
+
+void ObservationHeaderReading::leap_seconds(const Line& line) {
+    // Columns 25-27 may name the time scale; BDT counts leap seconds from another epoch.
+    const std::string_view field = columns(line.text, 0, 6);
+    if (is_blank(field) || columns(line.text, 24, 3) == "BDS") return;
+    const std::optional<int> value = whole_field(field);
+    if (!value || *value < 0 || *value >= 1000) return warn(line, in_quotes(field), "the number of leap seconds");
+    facts_.leap_seconds = value;
+}
+
+void ObservationHeaderReading::time_system(const Line& line) {
+    const std::string_view system = trimmed(columns(line.text, 48, 3));
+    if (system.empty()) return;
+    constexpr std::array<std::string_view, 6> known{"GPS", "GLO", "GAL", "QZS", "BDT", "IRN"};
+    if (std::find(known.begin(), known.end(), system) == known.end())
+        return warn(line, in_quotes(system), "a time system: GPS, GLO, GAL, QZS, BDT or IRN");
+    facts_.time_system = std::string(system);
+}
+
+void ObservationHeaderReading::warn(const Line& line, std::string_view found, std::string_view expected) {
+    if (facts_.warnings.size() >= most_warnings) return;
+    facts_.warnings.push_back(
+        fmt::format("{}:{}: found {}; expected {}; line passed over", name_, line.number, found, expected));
+}
+
+}  // namespace skyloop::rinex
