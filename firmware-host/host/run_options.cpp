@@ -13,6 +13,7 @@
 #include "base/core/spelling.hpp"
 #include "base/core/text_file.hpp"
 #include "base/time/utc_time.hpp"
+#include "run/scenario/scenario_changes.hpp"
 #include "run/scenario/scenario_file.hpp"
 #include "wire/transport/open_transport.hpp"
 
@@ -200,6 +201,25 @@ void add_verbosity_options(CLI::App& command, Verbosity& verbosity) {
     command.add_flag("--log-json", verbosity.json, "Messages as JSON, an object a line");
 }
 
+void add_setting_option(CLI::App& command, std::vector<std::string>& settings) {
+    command
+        .add_option("--set", settings,
+                    "A key of the scenario, such as receiver.0.rate_hz=5: KEY=VALUE, a value as in TOML or a word; "
+                    "repeatable")
+        ->allow_extra_args(false);
+}
+
+Result<Scenario> scenario_with(const std::string& file, const std::vector<std::string>& settings) {
+    std::vector<ScenarioChange> changes;
+    for (const std::string& setting : settings) {
+        auto change = parse_change(setting);
+        if (!change) return fail(change.error().code, "--set " + change.error().message);
+        changes.push_back(std::move(*change));
+    }
+    if (!file.empty()) return read_changed_scenario_file(file, changes);
+    return changes.empty() ? Scenario() : read_changed_scenario("", "--set", changes);
+}
+
 void add_place_options(CLI::App& command, RunOptions& options) {
     command.add_option("--at", options.at,
                        "Stand still there: LAT,LON[,HEIGHT] in degrees and metres above the ellipsoid");
@@ -221,6 +241,7 @@ void add_scene_option(CLI::App& command, RunOptions& options) {
 
 void add_run_options(CLI::App& command, RunOptions& options) {
     command.add_option("SCENARIO", options.scenario, "Scenario file (TOML); without it embedded defaults");
+    add_setting_option(command, options.settings);
     add_place_options(command, options);
     command.add_option("--trajectory", options.trajectory,
                        "A .toml file with a [trajectory], or a track: .csv, .gpx, …");
@@ -304,12 +325,9 @@ std::optional<std::string> pause_warning(const Scenario& scenario) {
 
 Result<Scenario> scenario_from(const RunOptions& options) {
     if (const auto kept = check_repeat(options); !kept) return fail(kept.error());
-    Scenario scenario;
-    if (!options.scenario.empty()) {
-        auto read = read_scenario_file(options.scenario);
-        if (!read) return fail(read.error());
-        scenario = std::move(*read);
-    }
+    auto read = scenario_with(options.scenario, options.settings);
+    if (!read) return fail(read.error());
+    Scenario scenario = std::move(*read);
     if (!options.nav.empty()) scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
     if (options.rebase_nav) {
         scenario.sky.rebase_navigation = true;

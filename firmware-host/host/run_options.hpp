@@ -16,6 +16,7 @@ namespace skyloop::host {
 /// What was typed; empty or absent: the scenario's own.
 struct RunOptions {
     std::string scenario;
+    std::vector<std::string> settings;  ///< --set
     std::string at, trajectory, start, model, board, state, scene, control, power;
     std::vector<std::string> nav, ports, outputs;
     bool rebase_nav = false;
@@ -34,6 +35,10 @@ struct RunOptions {
 };
 
 void add_verbosity_options(CLI::App& command, Verbosity& verbosity);
+/// --set: keys of the scenario.
+void add_setting_option(CLI::App& command, std::vector<std::string>& settings);
+/// The scenario of a file, or of defaults where it is empty, with the settings of --set.
+Result<Scenario> scenario_with(const std::string& file, const std::vector<std::string>& settings);
 /// --at, --nav, --rebase-nav, --start: where and when.
 void add_place_options(CLI::App& command, RunOptions& options);
 /// --scene: what stands around.

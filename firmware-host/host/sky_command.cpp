@@ -220,6 +220,7 @@ Action add_sky_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("sky", "Which satellites stand where");
     auto options = std::make_shared<SkyOptions>();
     command->add_option("SCENARIO", options->run.scenario, "Scenario file (TOML); without it embedded defaults");
+    add_setting_option(*command, options->run.settings);
     add_place_options(*command, options->run);
     command->add_option("--model", options->run.model, "Sensor model that decides which satellites are used");
     add_scene_option(*command, options->run);

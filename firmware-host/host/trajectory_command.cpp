@@ -14,7 +14,6 @@
 #include "motion/tracks/read_track.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/load_track.hpp"
-#include "run/scenario/scenario_file.hpp"
 #include "run_options.hpp"
 #include "study/plot/path_plot.hpp"
 #include "trajectory_listing.hpp"
@@ -24,6 +23,7 @@ namespace {
 
 struct TrajectoryOptions {
     std::string file, vehicle, format = "text";
+    std::vector<std::string> settings;
     std::string smooth;  // empty: as the file says
     std::optional<double> rate_hz, duration_s, gap_s, speed_mps;
     std::string origin;  // empty: as the file says
@@ -48,7 +48,9 @@ Result<std::optional<VehicleClass>> chosen_vehicle(const std::string& name) {
 // A .toml file holds a trajectory, alone or in a whole scenario; any other is a track.
 Result<Scenario> scenario_of(const TrajectoryOptions& options) {
     const std::filesystem::path file = options.file;
-    if (file.extension() == ".toml") return read_scenario_file(file);
+    if (file.extension() == ".toml") return scenario_with(options.file, options.settings);
+    if (!options.settings.empty())
+        return fail(ErrorCode::usage, fmt::format("--set is for scenarios; {} is a track", options.file));
     Scenario scenario;
     FileSettings track;
     track.path = file;
@@ -209,6 +211,7 @@ Action add_trajectory_command(CLI::App& app) {
     auto options = std::make_shared<TrajectoryOptions>();
     command->add_option("FILE", options->file, "A track, or a .toml with a [trajectory], alone or in a scenario")
         ->required();
+    add_setting_option(*command, options->settings);
     command->add_option("--vehicle", options->vehicle,
                         "Whose limits count, and how a track without attitudes stands: fixed pedestrian car rover boat "
                         "plane multirotor");

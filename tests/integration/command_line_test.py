@@ -47,6 +47,13 @@ MISUSES = [
     (["run", "--speed", "fast"], 2, ["--speed fast"]),
     (["run", "--rebase-nav"], 2, ["--rebase-nav", "--nav"]),
     (["run", "--sede", "1"], 2, ["--sede"]),
+    (["run", "--set", "run.seed"], 2, ["--set 'run.seed': expected KEY=VALUE"]),
+    (["check", "--set", "run.seed=1,2"], 2, ["--set run.seed: '1,2' is 2 values"]),
+    (["check", "--set", "run.duratoin_s=5"], 2, ["run.duratoin_s: unknown key", "did you mean 'duration_s'"]),
+    (["check", "--set", "receiver.0.rate_hz=1000"], 2, ["rate_hz", "1000", "0.01 to 100"]),
+    (["check", "--set", "receiver.0.rate_hz=often"], 2, ["rate_hz: is a text"]),
+    (["check", "--set", "receiver.1.rate_hz=5"], 2, ["the scenario has no receiver.1"]),
+    (["trajectory", "track.gpx", "--set", "run.seed=1"], 2, ["--set is for scenarios"]),
     (["simulate", "--out", "x"], 2, ["--duration"]),
     (["simulate", "--duration", "1"], 2, ["--out"]),
     (["check", "/no/such/scenario.toml"], 1, ["/no/such/scenario.toml"]),
@@ -296,6 +303,22 @@ class CommandLineTest(unittest.TestCase):
                 skyloop("simulate", "--duration", 1, "--start", "2026-01-01T00:00:00Z", "--trajectory", path, "--out", folder)
                 digests.add(json.loads(pathlib.Path(folder, "run.json").read_text(encoding="utf-8"))["scenario_digest"])
         self.assertEqual(len(digests), 2)
+
+    def test_a_key_that_is_set_is_the_same_as_in_the_file(self):
+        scenario = "[run]\nstart = 2026-03-01T00:00:00Z\nduration_s = 30\n"
+        key = "[model.modern.terms.multipath]\nscale = 2\n[[receiver]]\nrate_hz = 5\n"
+        with open_folder() as name:
+            folder = pathlib.Path(name)
+            (folder / "plain.toml").write_text(scenario, encoding="utf-8")
+            (folder / "key.toml").write_text(scenario + key, encoding="utf-8")
+            skyloop("simulate", folder / "key.toml", "--out", folder / "key")
+            skyloop("simulate", folder / "plain.toml", "--out", folder / "set", "--set",
+                    "model.modern.terms.multipath.scale=2", "--set", "receiver.0.rate_hz=5")
+            skyloop("simulate", folder / "plain.toml", "--out", folder / "plain")
+            for file in ("port0.out", "fixes.csv", "satellites.csv", "observations.rnx"):
+                by_key, by_option, without = ((folder / run / file).read_bytes() for run in ("key", "set", "plain"))
+                self.assertEqual(by_key, by_option, file)
+                self.assertNotEqual(by_key, without, file)
 
     def test_run_json_tells_what_ran(self):
         with open_folder() as folder:

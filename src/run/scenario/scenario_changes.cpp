@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "base/core/text_file.hpp"
 #include "detail/campaign_values.hpp"
 #include "detail/parsed_toml.hpp"
 #include "detail/scenario_keys.hpp"
@@ -102,6 +103,12 @@ bool lacks_list(const toml::node& parent, std::string_view part, std::string_vie
     return is_place(next) || std::find(lists.begin(), lists.end(), part) != lists.end();
 }
 
+// A scenario without [[receiver]] has one all the same.
+void make_first_receiver(toml::table& table, const std::vector<std::string_view>& parts) {
+    if (parts.size() < 2 || parts[0] != "receiver" || table.contains("receiver")) return;
+    if (parts[1] == "0" || parts[1] == default_receiver_name(0)) table.insert("receiver", toml::array{toml::table{}});
+}
+
 // @return how much of the key is not there: "receiver.0"; empty: it is changed
 std::string apply_change(toml::table& table, const ScenarioChange& change) {
     const std::vector<std::string_view> parts = parts_of(change.key);
@@ -109,6 +116,7 @@ std::string apply_change(toml::table& table, const ScenarioChange& change) {
         return fmt::format("{}", fmt::join(parts.data(), &parts[last] + 1, "."));
     };
     if (parts.size() > most_key_parts || std::find(parts.begin(), parts.end(), "") != parts.end()) return change.key;
+    make_first_receiver(table, parts);
     toml::node* parent = &table;
     for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
         if (lacks_list(*parent, parts[i], parts[i + 1])) return until(i + 1);
@@ -162,8 +170,8 @@ void apply_changes(toml::table& table, MistakeList& mistakes, std::span<const Sc
     for (const ScenarioChange& change : changes)
         if (const std::string missing = apply_change(table, change); !missing.empty())
             mistakes.add(place_of_parameter(table, change.key),
-                         fmt::format("'{}' leads to no key: the scenario has no {} to vary; expected tables, and of a "
-                                     "list an entry's place from 0 on, or its name or kind",
+                         fmt::format("'{}' leads to no key: the scenario has no {}; expected tables, and of a list an "
+                                     "entry's place from 0 on, or its name or kind",
                                      change.key, missing));
 }
 
@@ -234,6 +242,28 @@ Result<Scenario> read_changed_scenario(std::string_view text, const std::filesys
         [&](toml::table& table, MistakeList& mistakes) { apply_changes(table, mistakes, changes); });
     if (!read) return fail(read.error());
     return scenario;
+}
+
+Result<Scenario> read_changed_scenario_file(const std::filesystem::path& file,
+                                            std::span<const ScenarioChange> changes) {
+    constexpr std::size_t largest = std::size_t{16} << 20;
+    const auto text = read_text_file(file, largest);
+    if (!text) return fail(text.error());
+    return read_changed_scenario(*text, file, changes);
+}
+
+Result<ScenarioChange> parse_change(std::string_view text) {
+    const std::size_t equals = text.find('=');
+    const std::string key(text.substr(0, equals));
+    if (equals == std::string_view::npos || key.empty())
+        return fail(ErrorCode::usage, fmt::format("'{}': expected KEY=VALUE, such as run.seed=7", text));
+    const auto values = parse_campaign_values(text.substr(equals + 1));
+    if (!values) return fail(values.error().code, fmt::format("{}: {}", key, values.error().message));
+    if (values->size() != 1)
+        return fail(ErrorCode::usage, fmt::format("{}: '{}' is {} values; expected one, a list in brackets, or a text "
+                                                  "with commas in quotes",
+                                                  key, text.substr(equals + 1), values->size()));
+    return ScenarioChange{key, values->front()};
 }
 
 bool speaks_of(std::string_view sentence, std::string_view key) {

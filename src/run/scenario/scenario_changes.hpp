@@ -15,16 +15,21 @@ namespace skyloop {
 /// A key with another value. Of a list of tables an entry is meant by its place, from 0 on, by its `name`, by its
 /// `kind` where no other has it, or by what messages call it: "receiver.0.rate_hz", "fault.outage.for_s",
 /// "receiver.receiver1.board", "fault.jamming 2.for_s". Of a list of values by its place:
-/// "trajectory.at.2". A key that the file does not have is added.
+/// "trajectory.at.2". A key that the file does not have is added, "receiver.0" too.
 struct ScenarioChange {
     std::string key;
     CampaignValue value;
 };
 
+/// "KEY=VALUE" of the command line: a value as TOML writes it, or a word. Fails with `usage`.
+Result<ScenarioChange> parse_change(std::string_view text);
+
 /// Reads a scenario as read_scenario() does, after the changes. A mistake in a value that was changed is told at the
 /// place of its [[campaign.parameter]], where there is one, and each mistake says the changes.
 Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
                                        std::span<const ScenarioChange> changes);
+/// The same of a file.
+Result<Scenario> read_changed_scenario_file(const std::filesystem::path& file, std::span<const ScenarioChange> changes);
 
 /// Whether a sentence about a scenario is one about a key, or about a table that holds it: of "foo.bar" it is
 /// "foo.bar: is …", "'foo.bar' leads …", "foo: unknown key" and "[foo] has …".

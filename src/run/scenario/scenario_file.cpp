@@ -9,6 +9,7 @@
 #include "base/core/text_file.hpp"
 #include "base/time/utc_time.hpp"
 #include "detail/scenario_keys.hpp"
+#include "run/scenario/scenario_changes.hpp"
 
 namespace skyloop {
 namespace {
@@ -123,21 +124,10 @@ void read_constellation_list(TableReader& table, const char* key, std::vector<Co
 }
 
 Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file) {
-    Scenario scenario;
-    scenario.name = file.string();
-    scenario.source = text;
-    const auto read =
-        read_toml(text, file.string(), [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); });
-    if (!read) return fail(read.error());
-    return scenario;
+    return read_changed_scenario(text, file, {});
 }
 
-Result<Scenario> read_scenario_file(const std::filesystem::path& file) {
-    constexpr std::size_t largest = std::size_t{16} << 20;
-    const auto text = read_text_file(file, largest);
-    if (!text) return fail(text.error());
-    return read_scenario(*text, file);
-}
+Result<Scenario> read_scenario_file(const std::filesystem::path& file) { return read_changed_scenario_file(file, {}); }
 
 Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const auto text = read_text_file(file);

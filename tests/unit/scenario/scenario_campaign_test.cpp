@@ -196,8 +196,31 @@ TEST(ScenarioChanges, AListThatIsNotThereIsNotMade) {
     const auto scenario = read_changed_scenario("[run]\nduration_s = 10\n", "c.toml", changes);
     ASSERT_FALSE(scenario);
     EXPECT_THAT(scenario.error().message,
-                StartsWith("c.toml:1:1: 'fault.gap.for_s' leads to no key: the scenario has no fault.gap to vary"));
+                StartsWith("c.toml:1:1: 'fault.gap.for_s' leads to no key: the scenario has no fault.gap; expected"));
     EXPECT_THAT(scenario.error().message, Not(HasSubstr("expected a list of tables")));
+}
+
+TEST(ScenarioChanges, TheOneReceiverNeedsNoTable) {
+    for (const char* key : {"receiver.0.rate_hz", "receiver.receiver0.rate_hz"}) {
+        const auto changed = read_changed_scenario("", "c.toml", std::vector{*parse_change(key + std::string("=5"))});
+        ASSERT_TRUE(changed) << changed.error().message;
+        ASSERT_EQ(changed->receivers.size(), 1U);
+        EXPECT_EQ(changed->receivers[0].rate_hz, 5);
+    }
+    EXPECT_FALSE(read_changed_scenario("", "c.toml", std::vector{*parse_change("receiver.1.rate_hz=5")}));
+}
+
+TEST(ScenarioChanges, AreReadFromTheCommandLine) {
+    const auto value = [](std::string_view text) { return parse_change(text).value().value.toml; };
+    EXPECT_EQ(parse_change("receiver.0.port=pty:/tmp/a=b")->key, "receiver.0.port");
+    EXPECT_EQ(value("receiver.0.port=pty:/tmp/a=b"), "\"pty:/tmp/a=b\"");
+    EXPECT_EQ(value("run.seed=7"), "7");
+    EXPECT_EQ(value("run.seed=\"7\""), "\"7\"");
+    EXPECT_EQ(value("trajectory.at=[47, 8, 400.5]"), "[47, 8, 400.5]");
+    EXPECT_EQ(value("sky.rebase_navigation=true"), "true");
+    EXPECT_EQ(value("run.start=2026-03-01T00:00:00Z"), "2026-03-01T00:00:00Z");
+    for (const char* wrong : {"", "run.seed", "=7", "run.seed=", "run.seed=1,2", "trajectory.at=[47, 8"})
+        EXPECT_EQ(parse_change(wrong).error().code, ErrorCode::usage) << wrong;
 }
 
 TEST(ScenarioChanges, AKeyTooDeepForTheStackLeadsToNone) {
@@ -217,9 +240,8 @@ TEST(ScenarioChanges, AWrongValueIsToldWhereTheFileChangesIt) {
     EXPECT_THAT(change_mistake("fault.first.for_s", "-4"), HasSubstr("; with fault.first.for_s = -4"));
     EXPECT_THAT(change_mistake("run.duration_s", "x"), StartsWith("c.toml:1:1: run.duration_s: is a text"));
     EXPECT_THAT(change_mistake("run.duratoin_s", "1"), HasSubstr("did you mean 'duration_s'"));
-    EXPECT_THAT(change_mistake("fault.7.for_s", "1"),
-                HasSubstr("leads to no key: the scenario has no fault.7 to vary"));
-    EXPECT_THAT(change_mistake("output.0.to", "\"x\""), HasSubstr("the scenario has no output.0 to vary"));
+    EXPECT_THAT(change_mistake("fault.7.for_s", "1"), HasSubstr("leads to no key: the scenario has no fault.7; "));
+    EXPECT_THAT(change_mistake("output.0.to", "\"x\""), HasSubstr("the scenario has no output.0; "));
     EXPECT_THAT(change_mistake("fault.0.foo", "1"), HasSubstr("fault.0.foo: unknown key"));
     EXPECT_THAT(change_mistake("fault.none.for_s", "1"), HasSubstr("leads to no key"));
     EXPECT_THAT(change_mistake("run.duration_s.x", "1"), HasSubstr("leads to no key"));
