@@ -175,7 +175,7 @@ class Px4At9600(Px4):
     passes = 1
     speeds = SPEEDS[2:] + SPEEDS[:2]
     scenario = '[sky]\nconstellations = ["gps", "glonass", "galileo", "beidou"]\n[[receiver]]\nbaud = 9600\n'
-    navigation = "BRDC00IGS_R_20240010000_01D_MN.rnx.gz"
+    orbits = "BRDC00IGS_R_20240010000_01D_MN.rnx.gz"
 
 
 class Px4Systems(Px4):

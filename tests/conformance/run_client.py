@@ -32,8 +32,8 @@ def play(kind, board, variant):
     writes = variant if variant in wire.WRITES else "whole"
     with receiver.open_folder() as folder:
         arguments = list(kind.arguments)
-        if kind.navigation:
-            arguments += ["--nav", receiver.SHARED / "nav" / kind.navigation, "--rebase-nav"]
+        if kind.orbits:
+            arguments += ["--nav", receiver.SHARED / "nav" / kind.orbits, "--rebase-nav"]
         if kind.scenario:
             scenario = pathlib.Path(folder) / "scenario.toml"
             scenario.write_text(kind.scenario, encoding="utf-8")
@@ -61,9 +61,9 @@ def main():
     wire.take_priority()
     if f"{options.board} " not in receiver.skyloop("boards").stdout:
         receiver.skip(f"this skyloop has no board {options.board}")
-    navigation = CLIENTS[options.client].navigation
-    if navigation and not (receiver.SHARED / "nav" / navigation).exists():
-        receiver.skip(f"shared data absent: nav/{navigation}")
+    orbits = CLIENTS[options.client].orbits
+    if orbits and not (receiver.SHARED / "nav" / orbits).exists():
+        receiver.skip(f"shared data absent: nav/{orbits}")
     try:
         play(CLIENTS[options.client], receiver.BOARDS[options.board], options.variant)
     except (Failure, ConnectionError) as error:
