@@ -7,6 +7,7 @@
 #include "campaigns/campaign/campaign_run.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
+#include "run/emulator/scenario_mistakes.hpp"
 #include "run/fault/planned_events.hpp"
 #include "run_session.hpp"
 
@@ -69,7 +70,7 @@ int check(const RunOptions& options) {
     mode.open_ports = false;
     mode.only_checked = true;
     auto assembly = assemble(*scenario, data_folders(), mode);
-    if (!assembly) return messages.error(assembly.error());
+    if (!assembly) return messages.error(with_other_mistakes(assembly.error(), *scenario, data_folders(), mode.now));
     for (const auto& warning : {vehicle_warning(*scenario), pause_warning(*scenario)})
         if (warning) assembly->warnings.push_back(*warning);
     for (const std::string& warning : assembly->warnings)

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "run/emulator/deadline_grants.hpp"
+#include "run/emulator/scenario_mistakes.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
 
@@ -78,7 +79,7 @@ int run_live(const RunOptions& options) {
     mode.power_watchdog = watchdog->get();
     const auto orphans = watch_probes(*scenario, mode);
     auto assembly = assemble(*scenario, data_folders(), mode);
-    if (!assembly) return messages.error(assembly.error());
+    if (!assembly) return messages.error(with_other_mistakes(assembly.error(), *scenario, data_folders(), mode.now));
 
     const auto waiting = options.mavlink.empty() ? vehicle_warning(*scenario) : std::nullopt;
     if (waiting) assembly->warnings.push_back(*waiting);

@@ -1,5 +1,7 @@
 #include "run_options.hpp"
+#include "data_folders.hpp"
 #include "run_log.hpp"
+#include "run_session.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,6 +15,7 @@
 #include "base/core/spelling.hpp"
 #include "base/core/text_file.hpp"
 #include "base/time/utc_time.hpp"
+#include "run/emulator/scenario_mistakes.hpp"
 #include "run/scenario/scenario_changes.hpp"
 #include "run/scenario/scenario_file.hpp"
 #include "wire/transport/open_transport.hpp"
@@ -216,8 +219,13 @@ Result<Scenario> scenario_with(const std::string& file, const std::vector<std::s
         if (!change) return fail(change.error().code, "--set " + change.error().message);
         changes.push_back(std::move(*change));
     }
-    if (!file.empty()) return read_changed_scenario_file(file, changes);
-    return changes.empty() ? Scenario() : read_changed_scenario("", "--set", changes);
+    if (file.empty() && changes.empty()) return Scenario();
+    ScenarioReading reading =
+        file.empty() ? read_with_mistakes("", "--set", changes) : read_file_with_mistakes(file, changes);
+    if (!reading.mistakes) return std::move(reading.scenario);
+    if (reading.scenario.name.empty()) return fail(*reading.mistakes);
+    Error mistakes = with_other_mistakes(*reading.mistakes, reading.scenario, data_folders(), wall_clock());
+    return fail(ErrorCode::input, std::move(mistakes.message));
 }
 
 void add_place_options(CLI::App& command, RunOptions& options) {
@@ -328,12 +336,18 @@ Result<Scenario> scenario_from(const RunOptions& options) {
     auto read = scenario_with(options.scenario, options.settings);
     if (!read) return fail(read.error());
     Scenario scenario = std::move(*read);
-    if (!options.nav.empty()) scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
+    if (!options.nav.empty()) {
+        scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
+        scenario.told_at.erase("sky.navigation");
+    }
     if (options.rebase_nav) {
         scenario.sky.rebase_navigation = true;
         scenario.told_at.erase("sky.rebase_navigation");
     }
-    if (!options.scene.empty()) scenario.scene.buildings = {options.scene};
+    if (!options.scene.empty()) {
+        scenario.scene.buildings = {options.scene};
+        scenario.told_at.erase("scene.buildings");
+    }
     if (options.seed) scenario.run.seed = *options.seed;
     if (!options.repeat.empty())
         if (const auto repeated = repeat_run(options.repeat, scenario); !repeated) return fail(repeated.error());

@@ -37,7 +37,8 @@ struct RunOptions {
 void add_verbosity_options(CLI::App& command, Verbosity& verbosity);
 /// --set: keys of the scenario.
 void add_setting_option(CLI::App& command, std::vector<std::string>& settings);
-/// The scenario of a file, or of defaults where it is empty, with the settings of --set.
+/// The scenario of a file, or of defaults where it is empty, with the settings of --set. Fails with a line for each
+/// mistake in it and in what it names.
 Result<Scenario> scenario_with(const std::string& file, const std::vector<std::string>& settings);
 /// --at, --nav, --rebase-nav, --start: where and when.
 void add_place_options(CLI::App& command, RunOptions& options);

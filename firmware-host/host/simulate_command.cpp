@@ -7,6 +7,7 @@
 #include "data_folders.hpp"
 #include "run/client/open_client.hpp"
 #include "run/emulator/load_track.hpp"
+#include "run/emulator/scenario_mistakes.hpp"
 #include "run/emulator/wires.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
@@ -68,7 +69,7 @@ int simulate(const RunOptions& options) {
     if (mode.open_ports && !mode.first_ports_only) plug_in_clients_alone(options, *scenario);
     if (!options.repeat.empty()) mode.repeat = options.repeat;
     auto assembly = assemble(*scenario, data_folders(), mode);
-    if (!assembly) return messages.error(assembly.error());
+    if (!assembly) return messages.error(with_other_mistakes(assembly.error(), *scenario, data_folders(), mode.now));
     if (const auto warning = vehicle_warning(*scenario)) assembly->warnings.push_back(*warning);
     CommandQueue nobody;
     const auto watch = RunWatch::start(*scenario, *assembly, {}, nobody);

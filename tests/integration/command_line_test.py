@@ -304,6 +304,50 @@ class CommandLineTest(unittest.TestCase):
                 digests.add(json.loads(pathlib.Path(folder, "run.json").read_text(encoding="utf-8"))["scenario_digest"])
         self.assertEqual(len(digests), 2)
 
+    def test_all_mistakes_are_reported_at_once(self):
+        """In the file itself and in what it names: unknown keys, ranges, expectations, files, board and port."""
+        text = """[run]
+duratoin_s = 5
+[sky]
+navigation = "absent.rnx"
+[trajectory]
+kind = "file"
+path = "absent.csv"
+[model.modern.link]
+antenna_table = "absent.atx"
+[scene]
+buildings = "absent.obj"
+[[receiver]]
+board = "m8"
+port = "/dev/ttyUSB0"
+rate_hz = 1000
+[[expect]]
+what = "the moon rises"
+"""
+        expected = [(2, "run.duratoin_s: unknown key; did you mean 'duration_s'?"),
+                    (4, "sky.navigation: ", "absent.rnx: No such file or directory"),
+                    (7, "trajectory.path: ", "absent.csv: No such file or directory"),
+                    (9, "absent.atx: No such file or directory"),
+                    (11, "scene.buildings: ", "absent.obj: No such file or directory"),
+                    (13, "receiver.board: board 'm8' is not known; did you mean 'ublox-m8'?"),
+                    (14, "receiver.port: port '/dev/ttyUSB0': no such kind of port; did you mean 'serial:/dev/ttyUSB0'?"),
+                    (15, "receiver.rate_hz: is 1000; expected a number from 0.01 to 100"),
+                    (17, "expect")]
+        with open_folder() as name:
+            path = pathlib.Path(name, "wrong.toml")
+            path.write_text(text, encoding="utf-8")
+            for command in (["check", path], ["simulate", path, "--duration", 1, "--out", f"{name}/out"], ["run", path]):
+                with self.subTest(command[0]):
+                    done = skyloop(*command, check=False)
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    lines = done.stderr.splitlines()
+                    self.assertEqual(len(lines), len(expected), done.stderr)
+                    for number, *words in expected:
+                        line = next((one for one in lines if one.startswith(f"skyloop: {path}:{number}:")), None)
+                        self.assertIsNotNone(line, f"nothing of line {number}: {done.stderr}")
+                        for word in words:
+                            self.assertIn(word, line)
+
     def test_a_key_that_is_set_is_the_same_as_in_the_file(self):
         scenario = "[run]\nstart = 2026-03-01T00:00:00Z\nduration_s = 30\n"
         key = "[model.modern.terms.multipath]\nscale = 2\n[[receiver]]\nrate_hz = 5\n"

@@ -187,26 +187,58 @@ void remember_place(const SharedParts& shared, std::size_t index, const Simulati
     receiver.remember(*place, undulation);
 }
 
+// What the keys of a receiver name.
+struct NamedParts {
+    firmware::BoardProfile board;
+    std::vector<WireRequest> wires;
+    std::optional<StateFile> state;
+};
+
+// Each is tried, whatever the others are: a mistake a line.
+Result<NamedParts> named_parts(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
+    const ReceiverEntry& entry = shared.scenario.receivers.at(index);
+    std::optional<Error> wrong;
+    const auto note = [&](const Error& error) {
+        if (wrong)
+            wrong->message += "\n" + error.message;
+        else
+            wrong = error;
+    };
+    NamedParts parts;
+    auto board = board_of(entry, shared.data);
+    if (!board) note(at_key("board", board.error(), entry));
+    constexpr auto every_port = {firmware::PortId::i2c, firmware::PortId::uart1, firmware::PortId::uart2,
+                                 firmware::PortId::usb, firmware::PortId::spi};
+    firmware::BoardProfile any;
+    any.ports = every_port;
+    auto wires = wires_of(entry, board ? *board : any);
+    if (!wires) note(at_key("port", wires.error(), entry));
+    if (const auto known = check_power(shared, index, warnings); !known) note(known.error());
+    if (!entry.state_file.empty()) {
+        auto opened = StateFile::open(entry.state_file);
+        if (opened)
+            parts.state = std::move(*opened);
+        else
+            note(at_key("state_file", opened.error(), entry));
+    }
+    if (wrong) return fail(*wrong);
+    parts.board = std::move(*board);
+    parts.wires = std::move(*wires);
+    return parts;
+}
+
 Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const Scenario& scenario = shared.scenario;
     const ReceiverEntry& entry = scenario.receivers.at(index);
-    auto board = board_of(entry, shared.data);
-    if (!board) return fail(at_key("board", board.error(), entry));
-    auto wires = wires_of(entry, *board);
-    if (!wires) return fail(at_key("port", wires.error(), entry));
-    if (const auto known = check_power(shared, index, warnings); !known) return fail(known.error());
-    std::optional<StateFile> state;
-    if (!entry.state_file.empty()) {
-        auto opened = StateFile::open(entry.state_file);
-        if (!opened) return fail(at_key("state_file", opened.error(), entry));
-        state = std::move(*opened);
-    }
-    const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, *board, index),
+    auto named = named_parts(shared, index, warnings);
+    if (!named) return fail(named.error());
+    auto& [board, wires, state] = *named;
+    const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, board, index),
                                             receiver_seed(scenario.run.seed, index), entry.power_up};
-    warn_of_missing_usb(*wires, *board, warnings);
-    warn_of_untracked(scenario, *board, options.settings, warnings);
-    if (const auto checked = check_options(*board, options, entry); !checked) return fail(checked.error());
-    firmware::Receiver receiver(std::move(*board), options);
+    warn_of_missing_usb(wires, board, warnings);
+    warn_of_untracked(scenario, board, options.settings, warnings);
+    if (const auto checked = check_options(board, options, entry); !checked) return fail(checked.error());
+    firmware::Receiver receiver(std::move(board), options);
     if (entry.rate_hz) warn_of_rate(*entry.rate_hz, receiver, warnings);
     if (const auto configured = receiver.configure(entry.config); !configured)
         return fail(at_key("config", configured.error(), entry));
@@ -222,12 +254,12 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     parts.state = std::move(state);
     parts.base = entry.base;
     if (shared.mode.repeat) {
-        auto heard = repeated_input(*shared.mode.repeat, index, *wires, parts.receiver.board());
+        auto heard = repeated_input(*shared.mode.repeat, index, wires, parts.receiver.board());
         if (!heard) return fail(heard.error());
         parts.repeated = std::move(*heard);
     }
     if (entry.base) parts.moving_base.emplace(receiver_seed(scenario.run.seed, index));
-    return PlannedStation{std::move(parts), std::move(*wires)};
+    return PlannedStation{std::move(parts), std::move(wires)};
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ void read_file_track(TableReader& table, PlaceReader& places, const std::filesys
     file.heading_given = table.has("heading_deg");
     file.heading = read_heading(table);
     table.file_path("path", folder, file.path);
+    file.path_told_at = table.told_at("path");
     table.needs_one_of({"path"}, "kind \"file\" has no path; expected path = \"track.csv\"");
     file.keeps_time = table.choice("time", clocks, clocks[0]).value_or(0) == 1;
     table.quantity("gap_s", file.gap, {1e-3, 1e7});

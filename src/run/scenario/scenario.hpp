@@ -82,6 +82,7 @@ struct CircleSettings {
 /// A recorded path. Its file is read by load_track() (emulator/load_track.hpp), which needs the geoid.
 struct FileSettings {
     std::filesystem::path path{};
+    std::string path_told_at{};  ///< "FILE:LINE:COLUMN: KEY: ", for messages; empty: in no file
     Angle heading{};
     bool keeps_time = false;           ///< the rows keep their own GPS time; else the first one is the start of the run
     std::optional<Geodetic> origin{};  ///< of local metres and of heights above the ground, where the file has such
@@ -216,7 +217,7 @@ struct Scenario {
     std::vector<Expectation> expectations;       ///< what the run is judged by
     std::optional<CampaignSettings> campaign{};  ///< many runs of it; one run passes over them
     std::vector<std::string> warnings;  ///< what a reader should be told, e.g. a level that is too large for a plane
-    ToldPlaces told_at{};  ///< of run.speed, sky.rebase_navigation, sky.constellations and atmosphere.tec_source
+    ToldPlaces told_at{};  ///< of keys that are judged after reading: run.speed, sky.navigation, scene.buildings, …
 };
 
 /// The timeline of a scenario: its faults, then its commands.

@@ -230,9 +230,10 @@ private:
 
 }  // namespace
 
-Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
-                                       std::span<const ScenarioChange> changes) {
-    Scenario scenario;
+ScenarioReading read_with_mistakes(std::string_view text, const std::filesystem::path& file,
+                                   std::span<const ScenarioChange> changes) {
+    ScenarioReading reading;
+    Scenario& scenario = reading.scenario;
     scenario.name = file.string();
     scenario.source = text;
     for (const ScenarioChange& change : changes)
@@ -240,16 +241,22 @@ Result<Scenario> read_changed_scenario(std::string_view text, const std::filesys
     const auto read = read_toml(
         text, file.string(), [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); },
         [&](toml::table& table, MistakeList& mistakes) { apply_changes(table, mistakes, changes); });
-    if (!read) return fail(read.error());
-    return scenario;
+    if (!read) reading.mistakes = read.error();
+    return reading;
 }
 
-Result<Scenario> read_changed_scenario_file(const std::filesystem::path& file,
-                                            std::span<const ScenarioChange> changes) {
+ScenarioReading read_file_with_mistakes(const std::filesystem::path& file, std::span<const ScenarioChange> changes) {
     constexpr std::size_t largest = std::size_t{16} << 20;
     const auto text = read_text_file(file, largest);
-    if (!text) return fail(text.error());
-    return read_changed_scenario(*text, file, changes);
+    if (!text) return {{}, text.error()};
+    return read_with_mistakes(*text, file, changes);
+}
+
+Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
+                                       std::span<const ScenarioChange> changes) {
+    ScenarioReading reading = read_with_mistakes(text, file, changes);
+    if (reading.mistakes) return fail(*reading.mistakes);
+    return std::move(reading.scenario);
 }
 
 Result<ScenarioChange> parse_change(std::string_view text) {

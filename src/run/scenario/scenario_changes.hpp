@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,12 +25,20 @@ struct ScenarioChange {
 /// "KEY=VALUE" of the command line: a value as TOML writes it, or a word. Fails with `usage`.
 Result<ScenarioChange> parse_change(std::string_view text);
 
+/// What was read of a scenario, up to its mistakes and beyond.
+struct ScenarioReading {
+    Scenario scenario;              ///< keys with a mistake keep their defaults; without a name where there is no text
+    std::optional<Error> mistakes;  ///< as of read_scenario()
+};
 /// Reads a scenario as read_scenario() does, after the changes. A mistake in a value that was changed is told at the
 /// place of its [[campaign.parameter]], where there is one, and each mistake says the changes.
+ScenarioReading read_with_mistakes(std::string_view text, const std::filesystem::path& file,
+                                   std::span<const ScenarioChange> changes);
+/// The same of a file.
+ScenarioReading read_file_with_mistakes(const std::filesystem::path& file, std::span<const ScenarioChange> changes);
+/// The same, without mistakes.
 Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
                                        std::span<const ScenarioChange> changes);
-/// The same of a file.
-Result<Scenario> read_changed_scenario_file(const std::filesystem::path& file, std::span<const ScenarioChange> changes);
 
 /// Whether a sentence about a scenario is one about a key, or about a table that holds it: of "foo.bar" it is
 /// "foo.bar: is …", "'foo.bar' leads …", "foo: unknown key" and "[foo] has …".

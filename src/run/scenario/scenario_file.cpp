@@ -96,7 +96,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     });
     top.table("sky", [&](TableReader& t) {
         read_sky_keys(t, scenario.sky, folder);
-        remember_places(t, "sky", {"rebase_navigation", "constellations"}, scenario.told_at);
+        remember_places(t, "sky", {"navigation", "rebase_navigation", "constellations"}, scenario.told_at);
     });
     const TrajectoryContext context{read_frame(top), folder};
     if (auto path = read_trajectory_keys(top, context, scenario.warnings)) scenario.trajectory = std::move(*path);
@@ -106,7 +106,10 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
         scenario.atmosphere_keys = t.keys();
         remember_places(t, "atmosphere", {"tec_source"}, scenario.told_at);
     });
-    top.table("scene", [&](TableReader& t) { read_scene_keys(t, scenario.scene, folder); });
+    top.table("scene", [&](TableReader& t) {
+        read_scene_keys(t, scenario.scene, folder);
+        remember_places(t, "scene", {"buildings", "terrain"}, scenario.told_at);
+    });
     read_receivers(top, scenario, context);
     if (is_all_live(scenario)) refuse_idle_frame(top);
     read_outputs(top, scenario);
@@ -127,7 +130,11 @@ Result<Scenario> read_scenario(std::string_view text, const std::filesystem::pat
     return read_changed_scenario(text, file, {});
 }
 
-Result<Scenario> read_scenario_file(const std::filesystem::path& file) { return read_changed_scenario_file(file, {}); }
+Result<Scenario> read_scenario_file(const std::filesystem::path& file) {
+    ScenarioReading reading = read_file_with_mistakes(file, {});
+    if (reading.mistakes) return fail(*reading.mistakes);
+    return std::move(reading.scenario);
+}
 
 Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const auto text = read_text_file(file);
