@@ -207,10 +207,9 @@ Result<NamedParts> named_parts(const SharedParts& shared, std::size_t index, std
     NamedParts parts;
     auto board = board_of(entry, shared.data);
     if (!board) note(at_key("board", board.error(), entry));
-    constexpr auto every_port = {firmware::PortId::i2c, firmware::PortId::uart1, firmware::PortId::uart2,
-                                 firmware::PortId::usb, firmware::PortId::spi};
     firmware::BoardProfile any;
-    any.ports = every_port;
+    any.ports = {firmware::PortId::i2c, firmware::PortId::uart1, firmware::PortId::uart2, firmware::PortId::usb,
+                 firmware::PortId::spi};
     auto wires = wires_of(entry, board ? *board : any);
     if (!wires) note(at_key("port", wires.error(), entry));
     if (const auto known = check_power(shared, index, warnings); !known) note(known.error());
