@@ -223,7 +223,7 @@ Result<Scenario> scenario_with(const std::string& file, const std::vector<std::s
     ScenarioReading reading =
         file.empty() ? read_with_mistakes("", "--set", changes) : read_file_with_mistakes(file, changes);
     if (!reading.mistakes) return std::move(reading.scenario);
-    if (reading.scenario.name.empty()) return fail(*reading.mistakes);
+    if (reading.scenario.source.empty()) return fail(*reading.mistakes);
     Error mistakes = with_other_mistakes(*reading.mistakes, reading.scenario, data_folders(), wall_clock());
     return fail(ErrorCode::input, std::move(mistakes.message));
 }

@@ -27,7 +27,7 @@ Result<ScenarioChange> parse_change(std::string_view text);
 
 /// What was read of a scenario, up to its mistakes and beyond.
 struct ScenarioReading {
-    Scenario scenario;              ///< keys with a mistake keep their defaults; without a name where there is no text
+    Scenario scenario;  ///< keys with a mistake keep their defaults; without a source where the file cannot be read
     std::optional<Error> mistakes;  ///< as of read_scenario()
 };
 /// Reads a scenario as read_scenario() does, after the changes. A mistake in a value that was changed is told at the
