@@ -15,7 +15,7 @@ import source_tree
 
 VERSION = 14
 SKIPPED = 77
-FOLDERS = ["include", "src", "firmware-host", "boards", "tests", "tools"]
+FOLDERS = ["include", "src", "firmware-host", "boards", "tests", "tools", "examples"]
 
 
 def clang_format():

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import source_tree
 
-FOLDERS = ["include", "src", "firmware-host", "boards", "tests", "tools", ".ci"]
+FOLDERS = ["include", "src", "firmware-host", "boards", "tests", "tools", "examples", ".ci"]
 FILE_LINES, LONG_FILE_LINES = 400, 600
 FUNCTION_LINES, TEST_FUNCTION_LINES = 40, 80
 PARAMETERS = 5

@@ -8,7 +8,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("SKYLOOP_BUILD", ROOT / "build/dev"))
-EXAMPLES = ROOT / "tools/examples"
+EXAMPLES = ROOT / "examples"
 SKIPPED = 77
 
 

@@ -10,7 +10,7 @@ import unittest
 
 from session import ROOT, Emulator, open_folder
 
-sys.path.insert(0, str(ROOT / "tools/examples/python"))
+sys.path.insert(0, str(ROOT / "examples/python"))
 import point_mass  # noqa: E402
 
 # Of the truth's square 60 m wide, with 5 m given away at its corners and a receiver that is some metres off.

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 from session import ROOT, Emulator, open_folder
 
-spec = importlib.util.spec_from_file_location("json_bridge", ROOT / "tools/examples/ros/json_bridge.py")
+spec = importlib.util.spec_from_file_location("json_bridge", ROOT / "examples/ros/json_bridge.py")
 bridge = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(bridge)
 

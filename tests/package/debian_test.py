@@ -95,7 +95,7 @@ class CleanDebian(unittest.TestCase):
         found = list((self.root / "usr/lib").rglob("skyloop.pc"))
         self.assertEqual(len(found), 1)
         words = run("pkg-config", "--cflags", "--libs", "skyloop", env={**os.environ, "PKG_CONFIG_PATH": str(found[0].parent)})
-        run("cc", "-std=c11", ROOT / "tools/examples/c/fly.c", *words.stdout.split(), "-lm", "-o", self.root / "tmp/fly")
+        run("cc", "-std=c11", ROOT / "examples/c/fly.c", *words.stdout.split(), "-lm", "-o", self.root / "tmp/fly")
         done = self.inside("/tmp/fly", "6")
         self.assertIn("7 epochs, fix 3", done.stderr)
 

@@ -58,7 +58,7 @@ class TwoRuns(unittest.TestCase):
                   "skyloop-data": ("boards/receivers/ublox-m8.toml", "geoids/egm96-15.pgm", "nequick_g/ccir11.asc", "scenarios/flight.toml"),
                   "libskyloop0": ("libskyloop.so.0", "libskyloop.so.0.1"),
                   "libskyloop-dev": ("include/skyloop.h", "libskyloop.so", "pkgconfig/skyloop.pc", "cmake/skyloop/skyloopConfig.cmake"),
-                  "skyloop-doc": ("docs/receiver.md", "docs/commands.md", "tools/examples/c/fly.c", "boards/README.md")}
+                  "skyloop-doc": ("docs/receiver.md", "docs/commands.md", "examples/c/fly.c", "boards/README.md")}
         everything = [self.contents(name) for name in NAMES]
         self.assertEqual(sum(map(len, everything)), len(set().union(*everything)), "a file is in two packages")
         for name, files in wanted.items():

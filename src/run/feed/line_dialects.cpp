@@ -1,4 +1,4 @@
-// FlightGear's generic protocol as tools/examples/flightgear/skyloop.xml defines it, and JSBSim's SOCKET output: lines
+// FlightGear's generic protocol as examples/flightgear/skyloop.xml defines it, and JSBSim's SOCKET output: lines
 // of numbers (FEEDS.md 3.4 and 3.12).
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // The axes of engines, as the example plugin turns them: north-east, climbing, banked to the right.
-#include "tools/examples/engine/gnss_sensor.hpp"
+#include "examples/engine/gnss_sensor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -330,7 +330,7 @@ TEST(TruthFeed, HearsTheExampleSender) {
     const auto any = feed->path("");
     feed->begin(feed_start, steady_clock_ns());
     const std::string command =
-        "python3 '" SKYLOOP_SOURCE_DIR "/tools/examples/json/send_truth.py' " + std::to_string(feed->port()) + " 0.5";
+        "python3 '" SKYLOOP_SOURCE_DIR "/examples/json/send_truth.py' " + std::to_string(feed->port()) + " 0.5";
     if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "python3 is absent";
     ASSERT_EQ(std::system(command.c_str()), 0);
     EXPECT_TRUE(pump_until(*feed, [&] { return any->counts().samples == 25; }));

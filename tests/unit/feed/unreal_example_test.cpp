@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "../../../tools/examples/unreal/SkyloopAxes.h"
+#include "../../../examples/unreal/SkyloopAxes.h"
 #include "base/geo/attitude.hpp"
 
 namespace skyloop {
