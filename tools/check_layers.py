@@ -24,7 +24,7 @@ FENCES = [
     ("nlohmann/json", ("nlohmann/",), {"city", "verdict", "emulator", "analysis", "campaign", "campaign_report", "api", "feed", "output",
                                        "control", "scenario", "tracks", "host"}),
     ("pugixml", ("pugixml",), {"city", "tracks", "src/run/verdict/reports.cpp"}),
-    ("libzip", ("zip.h",), {"src/motion/tracks/kmz_track.cpp"}),
+    ("libarchive", ("archive.h", "archive_entry.h"), {"core"}),
     ("libosmium", ("osmium/", "protozero/"), {"city"}),
     ("CLI11", ("CLI/", "CLI11"), {"host"}),
     ("spdlog", ("spdlog/",), {"host"}),

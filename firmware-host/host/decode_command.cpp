@@ -6,8 +6,10 @@
 #include <csignal>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "base/core/archive.hpp"
 #include "base/core/text_file.hpp"
 #include "commands.hpp"
 #include "config_key_names.hpp"
@@ -143,9 +145,6 @@ private:
     std::uint64_t offset_ = 0;
 };
 
-// gzip's magic number (RFC 1952, 2.3.1).
-bool is_gzip(ByteSpan bytes) { return bytes.size() > 1 && bytes[0] == 0x1F && bytes[1] == 0x8B; }
-
 Result<void> decode_stream(InputStream& input, const std::string& path, Decoder& decoder) {
     auto last = std::chrono::steady_clock::now();
     bool first = true;
@@ -158,7 +157,8 @@ Result<void> decode_stream(InputStream& input, const std::string& path, Decoder&
             continue;
         }
         last = now;
-        if (first && input.is_file() && path != "-" && is_gzip(*bytes)) {
+        const std::string_view begin(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+        if (first && input.is_file() && path != "-" && (is_compressed(begin) || is_archive(begin))) {
             const auto text = read_text_file(path);
             if (!text) return fail(text.error());
             decoder.take(to_bytes(*text), false);
@@ -175,7 +175,7 @@ std::string nothing_in(const DecodeOptions& options, const std::string& name, st
     return fmt::format(
         "{}: no message of {} in its {} bytes{}", name,
         any ? "UBX, NMEA, RTCM 3, MSP, MAVLink or SBF" : fmt::format("{}", fmt::join(options.protocols, " or ")), bytes,
-        options.input == "-" ? "; gzip is unpacked from files alone" : "");
+        options.input == "-" ? "; what is packed is unpacked from files alone" : "");
 }
 
 int decode(const DecodeOptions& options) {
@@ -211,7 +211,7 @@ Action add_decode_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "decode", "The messages of a UBX, NMEA, RTCM 3, MSP, MAVLink or SBF stream as text or JSON lines");
     auto options = std::make_shared<DecodeOptions>();
-    command->add_option("FILE", options->input, "File (also gzip), tty or pipe; default: -, standard input");
+    command->add_option("FILE", options->input, "File (also .gz, .zip, …), tty or pipe; default: -, standard input");
     command->add_option("--format", options->format, "text or json")->check(CLI::IsMember({"text", "json"}));
     command
         ->add_option(

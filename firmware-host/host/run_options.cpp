@@ -244,7 +244,7 @@ void add_place_options(CLI::App& command, RunOptions& options) {
 void add_scene_option(CLI::App& command, RunOptions& options) {
     command.add_option(
         "--scene", options.scene,
-        "Buildings: .obj .ply .gltf .glb .geojson .json .osm .pbf .gml .xml, a folder or .tar.gz; or demo");
+        "Buildings: .obj .ply .gltf .glb .geojson .json .osm .pbf .gml .xml, a folder, .zip or .tar.gz; or demo");
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {

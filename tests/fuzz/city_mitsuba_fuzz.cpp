@@ -3,5 +3,5 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;
-    return check_city(data, size, parse_mitsuba_archive);
+    return check_city(data, size, parse_city_archive);
 }

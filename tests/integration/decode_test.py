@@ -1,4 +1,5 @@
 """`skyloop decode` on what the emulator itself sends, on live streams and on damage."""
+import bz2
 import csv
 import gzip
 import json
@@ -10,6 +11,7 @@ import subprocess
 import time
 import tty
 import unittest
+import zipfile
 
 from session import SKYLOOP, open_folder, skyloop
 
@@ -93,10 +95,15 @@ class DecodeTest(unittest.TestCase):
         done = decode(b"nothing in here\n")
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
-    def test_gzip(self):
+    def test_packed_files(self):
         with open_folder() as folder:
             path = pathlib.Path(folder, "log.gz")
             path.write_bytes(gzip.compress(ACK * 3))
+            self.assertEqual(skyloop("decode", path).stdout.splitlines(), ["UBX ACK-ACK class=6 id=1"] * 3)
+            path.write_bytes(bz2.compress(ACK * 3))
+            self.assertEqual(skyloop("decode", path).stdout.splitlines(), ["UBX ACK-ACK class=6 id=1"] * 3)
+            with zipfile.ZipFile(path, "w") as archive:
+                archive.writestr("log.ubx", ACK * 3)
             self.assertEqual(skyloop("decode", path).stdout.splitlines(), ["UBX ACK-ACK class=6 id=1"] * 3)
             path.write_bytes(gzip.compress(ACK * 300)[:-9])
             self.assertEqual(skyloop("decode", path, check=False).returncode, 2)

@@ -20,6 +20,7 @@ skyloop_require(nlohmann_json nlohmann-json3-dev CONFIG)
 skyloop_require(CLI11 libcli11-dev CONFIG)
 skyloop_require(fmt libfmt-dev CONFIG)
 skyloop_require(spdlog libspdlog-dev CONFIG)
+skyloop_require(LibArchive libarchive-dev)
 skyloop_require(ZLIB zlib1g-dev)
 skyloop_require(pugixml libpugixml-dev CONFIG)
 skyloop_require(EXPAT libexpat1-dev)
@@ -77,17 +78,6 @@ endif()
 add_library(osmium::osmium INTERFACE IMPORTED GLOBAL)
 target_include_directories(osmium::osmium INTERFACE ${SKYLOOP_OSMIUM_INCLUDE} ${SKYLOOP_PROTOZERO_INCLUDE})
 target_link_libraries(osmium::osmium INTERFACE EXPAT::EXPAT ZLIB::ZLIB Threads::Threads)
-
-# Debian's package configuration of libzip wants its command line programs as well.
-find_path(SKYLOOP_LIBZIP_INCLUDE zip.h)
-find_library(SKYLOOP_LIBZIP_LIBRARY zip)
-mark_as_advanced(SKYLOOP_LIBZIP_INCLUDE SKYLOOP_LIBZIP_LIBRARY)
-if(NOT SKYLOOP_LIBZIP_INCLUDE OR NOT SKYLOOP_LIBZIP_LIBRARY)
-    message(FATAL_ERROR "skyloop needs libzip: apt-get install libzip-dev  (or run tools/start, which does)")
-endif()
-add_library(libzip::libzip UNKNOWN IMPORTED GLOBAL)
-set_target_properties(libzip::libzip PROPERTIES IMPORTED_LOCATION ${SKYLOOP_LIBZIP_LIBRARY}
-                      INTERFACE_INCLUDE_DIRECTORIES ${SKYLOOP_LIBZIP_INCLUDE})
 
 # libusb, and the one header of hidapi, whose two libraries are loaded by name when a HID device is first asked for.
 find_path(SKYLOOP_LIBUSB_INCLUDE libusb-1.0/libusb.h)

@@ -80,8 +80,9 @@ struct CityFile {
 
 /// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON, CityJSONSeq or
 /// GeoJSON) .jsonl (CityJSONSeq) .osm .pbf .gml (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML;
-/// OpenStreetMap) .asc (height grid), each also as .gz; a folder, .tar or .tar.gz with one Mitsuba scene. Files that a
-/// scene or a .gltf names are read from its own folder alone. What doubts_about() says is among the warnings.
+/// OpenStreetMap) .asc (height grid), each also compressed (.gz .Z .bz2 .xz .zst), or with what it names in a zip or
+/// tar archive; a folder with one Mitsuba scene. Files that a scene or a .gltf names are read from its own folder
+/// alone. What doubts_about() says is among the warnings.
 ///
 /// Fails with `outside` when it cannot be opened, with `input` and FILE:LINE or the place when it is damaged, cut or
 /// empty.
@@ -106,8 +107,9 @@ Result<CityFile> parse_citygml(std::string_view text, std::string_view name, con
 Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,
                            const CityFileSettings& settings);
 
-/// A tar archive, not compressed, with one Mitsuba scene and the .ply files that it names.
-Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
+/// A zip or tar archive, not compressed, with one city and the files that it names. Of several, an .xml is passed over
+/// beside a city of another format, and .obj and .ply beside an .xml.
+Result<CityFile> parse_city_archive(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
 
 /// A height grid (ESRI ASCII, .asc) as ground. Cells are geographic degrees when they fit on the globe, are at most
 /// 0.1° wide and all together 6°, heights then metres above the ellipsoid unless `heights` says another. Metres farther

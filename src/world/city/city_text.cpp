@@ -98,22 +98,4 @@ bool names_ground(std::string_view name) {
     return (plane == 0 || !is_letter(lower[plane - 1])) && (behind == lower.size() || !is_letter(lower[behind]));
 }
 
-std::optional<std::string> name_inside(std::string_view name) {
-    std::string plain(name);
-    std::replace(plain.begin(), plain.end(), '\\', '/');
-    if (plain.empty() || plain.front() == '/' || plain.find(':') != std::string::npos ||
-        std::any_of(plain.begin(), plain.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }))
-        return std::nullopt;
-    std::string inside;
-    for (std::size_t at = 0; at <= plain.size();) {
-        const std::size_t slash = std::min(plain.find('/', at), plain.size());
-        const std::string part = plain.substr(at, slash - at);
-        if (part == "..") return std::nullopt;
-        if (!part.empty() && part != ".") inside += (inside.empty() ? "" : "/") + part;
-        at = slash + 1;
-    }
-    if (inside.empty()) return std::nullopt;
-    return inside;
-}
-
 }  // namespace skyloop

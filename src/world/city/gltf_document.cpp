@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "base/core/archive.hpp"
 #include "detail/city_text.hpp"
 
 namespace skyloop {

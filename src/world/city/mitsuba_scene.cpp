@@ -6,6 +6,7 @@
 #include <numbers>
 #include <pugixml.hpp>
 
+#include "base/core/archive.hpp"
 #include "detail/city_text.hpp"
 #include "detail/companion_files.hpp"
 #include "detail/mesh_builder.hpp"

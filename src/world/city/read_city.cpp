@@ -5,11 +5,11 @@
 #include <map>
 #include <system_error>
 
+#include "base/core/archive.hpp"
 #include "base/core/lowered_text.hpp"
 #include "base/core/text_file.hpp"
 #include "detail/city_text.hpp"
 #include "detail/companion_files.hpp"
-#include "detail/tar_archive.hpp"
 #include "world/city/city_file.hpp"
 
 namespace skyloop {
@@ -18,14 +18,23 @@ namespace {
 namespace fs = std::filesystem;
 
 // A small file may unpack to more than its scene may take.
-Result<std::string> read_bounded(const fs::path& path, const CityFileSettings& settings) {
-    const std::size_t most = most_city_bytes(settings);
-    auto text = read_text_file(path, most);
-    if (!text && text.error().code == ErrorCode::input && most == settings.memory_limit)
-        return fail(ErrorCode::input,
-                    fmt::format("{} (memory_limit_mb is {})", text.error().message, settings.memory_limit >> 20));
-    return text;
+tl::unexpected<Error> refuse_unread(Error error, const CityFileSettings& settings) {
+    if (most_city_bytes(settings) == settings.memory_limit && error.message.ends_with("the most that is read"))
+        error.message += fmt::format(" (memory_limit_mb is {})", settings.memory_limit >> 20);
+    return fail(std::move(error));
 }
+
+Result<std::string> read_bounded(const fs::path& path, const CityFileSettings& settings) {
+    auto text = read_uncompressed(path, most_city_bytes(settings));
+    return text ? text : refuse_unread(text.error(), settings);
+}
+
+// What is parsed: a file's bytes, its name for messages, and the files beside it.
+struct CityBytes {
+    std::string_view bytes;
+    std::string name;
+    const CompanionFiles& companions;
+};
 
 using CompanionDigests = std::map<std::string, std::uint64_t>;
 
@@ -43,13 +52,6 @@ CompanionFiles files_of_folder(const fs::path& folder, CompanionDigests& opened,
         opened[inside] = *digest;
         return content;
     };
-}
-
-Result<CityFile> with_companions(Result<CityFile> city, const CompanionDigests& opened) {
-    if (city)
-        for (const auto& [name, digest] : opened)
-            city->companions.push_back({name, digest});
-    return city;
 }
 
 // The name of an XML text's first element, without its namespace's prefix.
@@ -70,19 +72,15 @@ std::string_view root_element(std::string_view xml) {
     return {};
 }
 
-Result<CityFile> parse_xml(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
-    const std::string name = path.string();
-    const std::string_view root = root_element(text);
-    CompanionDigests opened;
-    if (root == "scene")
-        return with_companions(
-            parse_mitsuba(text, name, settings, files_of_folder(path.parent_path(), opened, settings)), opened);
-    if (root == "osm") return parse_osm(text, "osm", name, settings);
-    if (root == "CityModel") return parse_citygml(text, name, settings);
+Result<CityFile> parse_xml(const CityBytes& city, const CityFileSettings& settings) {
+    const std::string_view root = root_element(city.bytes);
+    if (root == "scene") return parse_mitsuba(city.bytes, city.name, settings, city.companions);
+    if (root == "osm") return parse_osm(city.bytes, "osm", city.name, settings);
+    if (root == "CityModel") return parse_citygml(city.bytes, city.name, settings);
     return fail(ErrorCode::input,
                 fmt::format("{}: its first element is '{}'; expected scene (Mitsuba), CityModel (CityGML) "
                             "or osm",
-                            name, shown(root)));
+                            city.name, shown(root)));
 }
 
 // True when the text of a "type" of the document begins so.
@@ -105,7 +103,7 @@ bool is_cityjson_sequence(std::string_view text) {
     return begin != std::string_view::npos && further[begin] == '{' && tells_type(further, "CityJSONFeature");
 }
 
-using Parser = Result<CityFile> (*)(std::string_view, const fs::path&, const CityFileSettings&);
+using Parser = Result<CityFile> (*)(const CityBytes&, const CityFileSettings&);
 
 struct CityEnding {
     std::string_view ending;
@@ -113,29 +111,28 @@ struct CityEnding {
 };
 
 template <Result<CityFile> (*parse)(std::string_view, std::string_view, const CityFileSettings&)>
-Result<CityFile> parse_named(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
-    return parse(bytes, path.string(), settings);
+Result<CityFile> parse_named(const CityBytes& city, const CityFileSettings& settings) {
+    return parse(city.bytes, city.name, settings);
 }
-Result<CityFile> parse_gltf_file(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
-    CompanionDigests opened;
-    return with_companions(
-        parse_gltf_with(bytes, path.string(), settings, files_of_folder(path.parent_path(), opened, settings)), opened);
+Result<CityFile> parse_gltf_file(const CityBytes& city, const CityFileSettings& settings) {
+    return parse_gltf_with(city.bytes, city.name, settings, city.companions);
 }
-Result<CityFile> parse_any_cityjson(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
-    return (is_cityjson_sequence(text) ? parse_cityjson_sequence : parse_cityjson)(text, path.string(), settings);
+Result<CityFile> parse_any_cityjson(const CityBytes& city, const CityFileSettings& settings) {
+    return (is_cityjson_sequence(city.bytes) ? parse_cityjson_sequence : parse_cityjson)(city.bytes, city.name,
+                                                                                         settings);
 }
-Result<CityFile> parse_any_json(std::string_view text, const fs::path& path, const CityFileSettings& settings) {
-    return tells_type(text, "CityJSON") ? parse_any_cityjson(text, path, settings)
-                                        : parse_geojson(text, path.string(), settings);
+Result<CityFile> parse_any_json(const CityBytes& city, const CityFileSettings& settings) {
+    return tells_type(city.bytes, "CityJSON") ? parse_any_cityjson(city, settings)
+                                              : parse_geojson(city.bytes, city.name, settings);
 }
-Result<CityFile> parse_osm_xml(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
-    return parse_osm(bytes, "osm", path.string(), settings);
+Result<CityFile> parse_osm_xml(const CityBytes& city, const CityFileSettings& settings) {
+    return parse_osm(city.bytes, "osm", city.name, settings);
 }
-Result<CityFile> parse_osm_pbf(std::string_view bytes, const fs::path& path, const CityFileSettings& settings) {
-    return parse_osm(bytes, "osm.pbf", path.string(), settings);
+Result<CityFile> parse_osm_pbf(const CityBytes& city, const CityFileSettings& settings) {
+    return parse_osm(city.bytes, "osm.pbf", city.name, settings);
 }
 
-constexpr std::array<CityEnding, 16> city_endings{{{".obj", parse_named<parse_obj>},
+constexpr std::array<CityEnding, 14> city_endings{{{".obj", parse_named<parse_obj>},
                                                    {".ply", parse_named<parse_ply>},
                                                    {".gltf", parse_gltf_file},
                                                    {".glb", parse_gltf_file},
@@ -148,57 +145,111 @@ constexpr std::array<CityEnding, 16> city_endings{{{".obj", parse_named<parse_ob
                                                    {".gml", parse_named<parse_citygml>},
                                                    {".xml", parse_xml},
                                                    {".asc", parse_named<parse_height_grid>},
-                                                   {".tar", parse_named<parse_mitsuba_archive>},
-                                                   {".tgz", parse_named<parse_mitsuba_archive>},
                                                    {".cityjson", parse_any_cityjson}}};
 
-/// Whether a file is a Mitsuba scene by its name. Hidden ones are none: macOS puts "._town.xml" beside "town.xml" in
-/// archives and on foreign disks.
-bool names_scene(std::string_view path) {
-    const std::string_view file = path.substr(path.rfind('/') + 1);
-    return !file.starts_with('.') && lowered_text(file).ends_with(".xml");
+const CityEnding* ending_of(std::string_view path) {
+    std::string name = lowered_text(path.substr(path.rfind('/') + 1));
+    for (const std::string_view packed : {".gz", ".z", ".bz2", ".xz", ".zst"})
+        if (name.ends_with(packed)) {
+            name.resize(name.size() - packed.size());
+            break;
+        }
+    const auto* const found = std::find_if(city_endings.begin(), city_endings.end(),
+                                           [&](const CityEnding& known) { return name.ends_with(known.ending); });
+    return found == city_endings.end() ? nullptr : found;
+}
+
+bool names_archive(std::string_view path) {
+    const std::string name = lowered_text(path.substr(path.rfind('/') + 1));
+    return name.ends_with(".zip") || name.ends_with(".tgz") || name.find(".tar") != std::string::npos;
+}
+
+/// Whether a file is a Mitsuba scene by its name.
+bool names_scene(std::string_view path) { return !is_hidden_file(path) && lowered_text(path).ends_with(".xml"); }
+
+// Which files of an archive are taken for its city: those of the lowest rank. Scenes name meshes, and an XML file
+// beside a city's tells of it.
+int city_rank(std::string_view ending) {
+    constexpr std::array<std::string_view, 3> companions{".xml", ".obj", ".ply"};
+    const auto* const found = std::find(companions.begin(), companions.end(), ending);
+    return found == companions.end() ? 0 : 1 + static_cast<int>(found - companions.begin());
+}
+
+// The one file of an archive that is its city.
+Result<std::string> city_in(const ArchiveFiles& files, std::string_view name) {
+    constexpr int none = 9;
+    int rank = none;
+    std::vector<std::string> cities;
+    for (const auto& [file, content] : files) {
+        const CityEnding* const ending = is_hidden_file(file) ? nullptr : ending_of(file);
+        if (!ending || city_rank(ending->ending) > rank) continue;
+        if (city_rank(ending->ending) < rank) cities.clear();
+        rank = city_rank(ending->ending);
+        cities.push_back(file);
+    }
+    if (cities.size() == 1) return cities.front();
+    std::string names;
+    for (std::size_t i = 0; i < cities.size() && i < 4; ++i)
+        names += fmt::format("{} {}", i == 0 ? ":" : ",", i == 3 ? "…" : cities[i]);
+    return fail(ErrorCode::input,
+                fmt::format("{}: an archive of {} cities{}; expected one", name, cities.size(), names));
+}
+
+// All of an archive but pictures, which nothing here reads.
+bool may_belong_to_city(std::string_view name) {
+    const std::string lower = lowered_text(name);
+    return !lower.ends_with(".png") && !lower.ends_with(".jpg") && !lower.ends_with(".jpeg");
+}
+
+Result<CityFile> parse_file(const CityEnding& known, const CityBytes& city, const CityFileSettings& settings) {
+    if (city.bytes.empty()) return fail(ErrorCode::input, fmt::format("{}: is empty", city.name));
+    return known.parse(city, settings);
 }
 
 Result<CityFile> read_by_ending(const fs::path& path, const CityFileSettings& settings) {
-    std::string name = lowered_text(path.filename().string());
-    if (name.ends_with(".gz")) name.resize(name.size() - 3);
-    for (const CityEnding& known : city_endings) {
-        if (!name.ends_with(known.ending)) continue;
-        const auto bytes = read_bounded(path, settings);
-        if (!bytes) return fail(bytes.error());
-        if (bytes->empty()) return fail(ErrorCode::input, fmt::format("{}: is empty", path.string()));
-        return known.parse(*bytes, path, settings);
+    const CityEnding* const known = ending_of(path.string());
+    const auto bytes = read_bounded(path, settings);
+    const bool archive = names_archive(path.string());
+    if (!bytes && (known || archive || bytes.error().code == ErrorCode::input)) return fail(bytes.error());
+    if (bytes && (archive || is_archive(*bytes))) return parse_city_archive(*bytes, path.string(), settings);
+    if (known) {
+        CompanionDigests opened;
+        const CompanionFiles companions = files_of_folder(path.parent_path(), opened, settings);
+        auto city = parse_file(*known, {*bytes, path.string(), companions}, settings);
+        if (city)
+            for (const auto& [name, digest] : opened)
+                city->companions.push_back({name, digest});
+        return city;
     }
     std::string known_endings;
-    for (const CityEnding& known : city_endings)
-        known_endings += fmt::format(" {}", known.ending);
+    for (const CityEnding& known_ending : city_endings)
+        known_endings += fmt::format(" {}", known_ending.ending);
     return fail(ErrorCode::input,
                 fmt::format("{}: its ending is of no known city; expected a folder or one of{}, each also "
-                            "as .gz",
+                            "compressed or in a .zip or .tar",
                             path.string(), known_endings));
 }
 
 }  // namespace
 
-Result<CityFile> parse_mitsuba_archive(std::string_view bytes, std::string_view name,
-                                       const CityFileSettings& settings) {
-    const auto members = tar_members(bytes, name);
-    if (!members) return fail(members.error());
-    std::string scene;
-    std::size_t scenes = 0;
-    for (const auto& [member, content] : *members)
-        if (names_scene(member) && scenes++ == 0) scene = member;
-    if (scenes != 1)
-        return fail(ErrorCode::input, fmt::format("{}: holds {} .xml files; expected one Mitsuba scene", name, scenes));
-    const std::string folder = scene.substr(0, scene.rfind('/') + 1);
+Result<CityFile> parse_city_archive(std::string_view bytes, std::string_view name, const CityFileSettings& settings) {
+    const std::string archive(name);
+    const std::size_t most = most_city_bytes(settings);
+    const auto files = archive_files(bytes, archive, most, may_belong_to_city);
+    if (!files) return refuse_unread(files.error(), settings);
+    const auto chosen = city_in(*files, name);
+    if (!chosen) return fail(chosen.error());
+    const std::string folder = chosen->substr(0, chosen->rfind('/') + 1);
     const CompanionFiles companions = [&](const std::string& inside) -> Result<std::string> {
-        const auto found = members->find(folder + inside);
-        if (found == members->end())
-            return fail(ErrorCode::input,
-                        fmt::format("names the file '{}', which the archive does not hold", shown(inside)));
-        return std::string(found->second);
+        const auto found = files->find(folder + inside);
+        if (found != files->end()) return found->second;
+        return fail(ErrorCode::input,
+                    fmt::format("names the file '{}', which the archive does not hold", shown(inside)));
     };
-    return parse_mitsuba(members->at(scene), fmt::format("{}:{}", name, scene), settings, companions);
+    const std::string place = fmt::format("{}:{}", name, *chosen);
+    const auto city = uncompressed(files->at(*chosen), place, most);
+    if (!city) return refuse_unread(city.error(), settings);
+    return parse_file(*ending_of(*chosen), {*city, place, companions}, settings);
 }
 
 Result<fs::path> file_of_city(const fs::path& path) {

@@ -18,7 +18,7 @@ namespace skyloop {
 Result<IonosphereMaps> read_ionex(std::string_view text, std::string_view name,
                                   const LeapSeconds& leap_seconds = LeapSeconds::announced());
 
-/// The same for a file, gzip-compressed or not. Fails as read_text_file and read_ionex do.
+/// The same for a file, packed or not. Fails as read_text_file and read_ionex do.
 Result<IonosphereMaps> read_ionex_file(const std::filesystem::path& path);
 
 }  // namespace skyloop

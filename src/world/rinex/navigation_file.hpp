@@ -56,7 +56,7 @@ struct NavigationFile {
 /// @param name of the file, for messages
 Result<NavigationFile> read_navigation(std::string_view text, std::string_view name);
 
-/// The same for a file, gzip-compressed or not. Fails as read_text_file and read_navigation do.
+/// The same for a file, packed or not. Fails as read_text_file and read_navigation do.
 Result<NavigationFile> read_navigation_file(const std::filesystem::path& path);
 
 }  // namespace skyloop

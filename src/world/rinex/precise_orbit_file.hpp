@@ -27,7 +27,7 @@ struct PreciseOrbitFile {
 /// @param name of the file, for messages
 Result<PreciseOrbitFile> read_precise_orbits(std::string_view text, std::string_view name);
 
-/// The same for a file, gzip-compressed or not. Fails as read_text_file and read_precise_orbits do.
+/// The same for a file, packed or not. Fails as read_text_file and read_precise_orbits do.
 Result<PreciseOrbitFile> read_precise_orbit_file(const std::filesystem::path& path);
 
 }  // namespace skyloop

@@ -58,7 +58,7 @@ std::string archive(const std::string& xml) {
 }
 
 Result<CityFile> read_archive(std::string_view bytes, const CityFileSettings& settings = {}) {
-    return parse_mitsuba_archive(bytes, "town.tar", settings);
+    return parse_city_archive(bytes, "town.tar", settings);
 }
 
 TEST(MitsubaScene, ReadsShapesMaterialsAndGround) {
@@ -115,7 +115,7 @@ TEST(MitsubaScene, NamesWhatIsWrong) {
     EXPECT_THAT(said("<include filename=\"other.xml\"/>"), HasSubstr("town.xml:6: includes another scene"));
     EXPECT_THAT(said(""), HasSubstr("holds no triangle"));
     EXPECT_THAT(said("<shape"), HasSubstr("town/town.xml:"));
-    EXPECT_THAT(refusal(read_archive(archive("<city/>"))), HasSubstr("no element 'scene'"));
+    EXPECT_THAT(refusal(read_archive(archive("<city/>"))), HasSubstr("town/town.xml: its first element is 'city'"));
     std::string broken = archive(scene(shape("a", "meshes/wall.ply", "front")));
     broken.replace(broken.find("4 0 1 2 3"), 9, "4 0 1 2 9");
     EXPECT_THAT(refusal(read_archive(broken)), HasSubstr("meshes/wall.ply:14: face 0 names vertex 9"));
@@ -126,13 +126,19 @@ TEST(MitsubaScene, RefusesDamagedArchives) {
     ASSERT_TRUE(read_archive(whole));
     std::string sum = whole;
     sum[3] = 'x';
-    EXPECT_THAT(refusal(read_archive(sum)), HasSubstr("byte 0: is no header"));
-    EXPECT_THAT(refusal(read_archive("")), HasSubstr("holds 0 .xml files"));
-    EXPECT_THAT(refusal(read_archive(member("a.xml", "") + member("b.xml", ""))), HasSubstr("holds 2 .xml files"));
-    EXPECT_THAT(refusal(read_archive(member("../a.xml", "<scene/>"))), HasSubstr("holds 0 .xml files"));
-    EXPECT_THAT(refusal(read_archive(member("a.xml", "<scene/>", '2'))), HasSubstr("holds 0 .xml files")) << "a link";
-    EXPECT_THAT(refusal(read_archive(std::string_view(whole).substr(0, 700))), HasSubstr("ends in a header"));
-    EXPECT_THAT(refusal(read_archive(std::string_view(whole).substr(0, 1100))), HasSubstr("the archive has 76 left"));
+    EXPECT_THAT(refusal(read_archive(sum)), HasSubstr("town.tar: no whole tar archive ("));
+    EXPECT_THAT(refusal(read_archive("")), HasSubstr("town.tar: "));
+    EXPECT_THAT(refusal(read_archive(member("a.xml", "") + member("b.xml", ""))),
+                HasSubstr("town.tar: an archive of 2 cities: a.xml, b.xml; expected one"));
+    EXPECT_THAT(refusal(read_archive(member("../a.xml", "<scene/>"))),
+                HasSubstr("town.tar:../a.xml: leads out of the archive"));
+    EXPECT_THAT(refusal(read_archive(member("a.xml", "<scene/>", '2'))),
+                HasSubstr("an archive of 0 cities; expected one"))
+        << "a link";
+    EXPECT_THAT(refusal(read_archive(std::string_view(whole).substr(0, 700))),
+                HasSubstr("town.tar: no whole tar archive ("));
+    EXPECT_THAT(refusal(read_archive(std::string_view(whole).substr(0, 1100))),
+                HasSubstr("town.tar:town/town.xml: cannot be unpacked; expected a whole file ("));
     for (std::size_t size = 0; size < whole.size(); size += 13) {
         const auto file = read_archive(std::string_view(whole).substr(0, size));
         if (file) test::expect_sound(*file);

@@ -4,8 +4,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/core/archive.hpp"
+#include "base/core/text_file.hpp"
 #include "mesh_support.hpp"
 #include "support/oracle_table.hpp"
+#include "support/packed.hpp"
 
 namespace skyloop::read_city_test {
 namespace {
@@ -59,6 +62,40 @@ TEST_F(ReadCity, NoFileMayHoldMoreThanTheSceneMayTake) {
     EXPECT_TRUE(read_city(file, {}));
     EXPECT_THAT(refusal(read_city(file, small)),
                 HasSubstr("b.obj: has more than 1048576 bytes of text, the most that is read (memory_limit_mb is 1)"));
+    const auto zip =
+        put("b.zip", test::archive_of("zip", {{"b.obj", small_obj + std::string(std::size_t{1} << 20, ' ')}}));
+    EXPECT_THAT(
+        refusal(read_city(zip, small)),
+        HasSubstr("b.zip:b.obj: unpacks to more than 1048576 bytes, the most that is read (memory_limit_mb is 1)"));
+}
+
+TEST_F(ReadCity, ReadsPackedCities) {
+    for (const char* filter : {"compress", "bzip2", "xz", "zstd"})
+        EXPECT_TRUE(read_city(put("a.obj.Z", test::compressed(filter, small_obj)), {})) << filter;
+    const std::string zip = test::archive_of(
+        "zip", {{"__MACOSX/._a.obj", "?"}, {"town/a.obj", small_obj}, {"town/a.mtl", ""}, {"town/wood.jpg", "?"}});
+    for (const char* name : {"a.zip", "a.obj", "a"}) {
+        const auto file = read_city(put(name, zip), {});
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_EQ(file->format, "obj");
+    }
+    EXPECT_TRUE(
+        read_city(put("a.tar.xz", test::compressed("xz", test::archive_of("pax", {{"a.obj", small_obj}}))), {}));
+    const std::string inner = test::archive_of("zip", {{"a.obj.gz", test::compressed("gzip", small_obj)}});
+    EXPECT_TRUE(read_city(put("b.zip", inner), {}));
+}
+
+TEST_F(ReadCity, NamesWhatIsWrongInAnArchive) {
+    const auto said = [&](const std::string& bytes) { return refusal(read_city(put("a.zip", bytes), {})); };
+    EXPECT_THAT(said(test::archive_of("zip", {{"a.obj", small_obj}, {"b.obj", small_obj}})),
+                HasSubstr("a.zip: an archive of 2 cities: a.obj, b.obj; expected one"));
+    EXPECT_THAT(said(test::archive_of("zip", {{"a.txt", "?"}})),
+                HasSubstr("a.zip: an archive of 0 cities; expected one"));
+    EXPECT_THAT(said(test::archive_of("zip", {{"in/a.obj", "v x\n"}})), HasSubstr("a.zip:in/a.obj:1: "));
+    EXPECT_THAT(said(test::archive_of("zip", {{"in/a.obj", small_obj}}, "secret")),
+                HasSubstr("a.zip:in/a.obj: is encrypted"));
+    EXPECT_THAT(said("neither"), HasSubstr("a.zip: no zip or tar archive ("));
+    EXPECT_EQ(read_city(folder_ / "absent.zip", {}).error().code, ErrorCode::outside);
 }
 
 TEST_F(ReadCity, TellsOfDoubtfulUnits) {
@@ -128,6 +165,20 @@ TEST(RealCities, MunichHasMaterialsAndGround) {
     }
     EXPECT_GE(ground, 1475.4 * 1205.6) << "its plane";
     EXPECT_NEAR(test::highest_of(file->model).z(), 98.57, 0.01) << "the Frauenkirche";
+}
+
+TEST(RealCities, MunichIsTheSameInAZip) {
+    SKYLOOP_REQUIRE_SHARED(path, "city/munich.tar.gz");
+    const auto files = archive_files(read_uncompressed(path).value(), path.string(), max_text_file_size);
+    ASSERT_TRUE(files) << files.error().message;
+    const fs::path zip = fs::path(::testing::TempDir()) / "skyloop_munich.zip";
+    std::ofstream(zip, std::ios::binary) << test::archive_of("zip", {files->begin(), files->end()});
+    const auto packed = read_city(zip, {}), plain = read_city(path, {});
+    fs::remove(zip);
+    ASSERT_TRUE(packed && plain);
+    EXPECT_TRUE(packed->model.vertices == plain->model.vertices);
+    EXPECT_EQ(packed->model.triangles.size(), plain->model.triangles.size());
+    EXPECT_EQ(packed->model.materials, plain->model.materials);
 }
 
 TEST(RealCities, EtoileHasGroundUnderItsArch) {

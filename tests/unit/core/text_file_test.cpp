@@ -7,6 +7,8 @@
 
 #include <fstream>
 
+#include "support/packed.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -83,9 +85,14 @@ TEST_F(ReadTextFile, GzipCutOffAnywhereIsRefused) {
     }
 }
 
-TEST_F(ReadTextFile, FilesOfUnixCompressAreNamedAsSuch) {
-    const fs::path path = write("brdc0010.17n.Z", "\x1f\x9d\x90 RINEX");
-    expect_error(read_text_file(path), ErrorCode::input, "packed by Unix compress (.Z)", path);
+TEST_F(ReadTextFile, OtherPackingsAreKnownByTheirContent) {
+    for (const char* filter : {"compress", "bzip2", "xz", "zstd"})
+        EXPECT_EQ(read_text_file(write("a.rnx", test::compressed(filter, "skyloop\n"))).value(), "skyloop\n") << filter;
+    const std::string zip = test::archive_of("zip", {{"in/a.rnx", "skyloop\n"}});
+    EXPECT_EQ(read_text_file(write("a.zip", zip)).value(), "skyloop\n");
+    EXPECT_EQ(read_uncompressed(write("a.zip.xz", test::compressed("xz", zip))).value(), zip);
+    const fs::path path = write("a.zip", zip.substr(0, 60));
+    expect_error(read_text_file(path), ErrorCode::input, "no whole zip archive", path);
 }
 
 TEST_F(ReadTextFile, WhatIsNotAFileIsRefused) {
@@ -114,6 +121,8 @@ TEST_F(ReadTextFile, MoreThanTheLimitIsRefused) {
     expect_error(read_text_file(plain, 1000), ErrorCode::input, "more than 1000 bytes", plain);
     const fs::path small = write("small.gz", packed_text());
     EXPECT_TRUE(read_text_file(small, 8).has_value());
+    const fs::path large = write("large", std::string(3'000'000, 'x'));
+    expect_error(read_text_file(large, 1000), ErrorCode::input, "more than 1000 bytes", large);
     expect_error(read_text_file(small, 7), ErrorCode::input, "more than 7 bytes", small);
 }
 

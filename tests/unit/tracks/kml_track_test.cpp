@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "stored_zip.hpp"
+#include "support/packed.hpp"
 #include "track_reading.hpp"
 
 namespace skyloop {
@@ -132,6 +133,11 @@ TEST(KmzTrack, IsUnpacked) {
     EXPECT_EQ(track.format, "KMZ");
     EXPECT_THAT(refusal_of_track(test::stored_zip("a\nb.kml", kml("")), "t.kmz"),
                 HasSubstr("t.kmz/a b.kml: 1 placemarks and no place in them"));
+    const auto chosen = [](const char* other) {
+        return refusal_of_track(test::archive_of("zip", {{"z.kml", kml("")}, {other, kml("")}}), "t.kmz");
+    };
+    EXPECT_THAT(chosen("a.kml"), HasSubstr("t.kmz/z.kml: ")) << "the first";
+    EXPECT_THAT(chosen("Doc.kml"), HasSubstr("t.kmz/Doc.kml: "));
 }
 
 TEST(KmzTrack, RefusesArchivesWithoutKmlAndBrokenOnes) {
@@ -140,11 +146,12 @@ TEST(KmzTrack, RefusesArchivesWithoutKmlAndBrokenOnes) {
     EXPECT_THAT(refusal_of_track(whole.substr(0, 40), "t.kmz"), HasSubstr("no whole zip archive"));
     std::string damaged = test::stored_zip("doc.kml", kml(""));
     damaged[60] = static_cast<char>(damaged[60] ^ 1);
-    EXPECT_THAT(refusal_of_track(damaged, "t.kmz"), HasSubstr("its KML cannot be unpacked"));
+    EXPECT_THAT(refusal_of_track(damaged, "t.kmz"),
+                HasSubstr("t.kmz:doc.kml: cannot be unpacked; expected a whole file ("));
 }
 
 TEST(KmzTrack, IsUnpackedToABound) {
-    const std::string bomb = test::stored_zip("doc.kml", std::string((std::size_t{64} << 20) + 1, ' '), false);
+    const std::string bomb = test::stored_zip("doc.kml", std::string(std::size_t{65} << 20, ' '), false);
     EXPECT_THAT(refusal_of_track(bomb, "t.kmz").substr(0, 200), HasSubstr("unpacks to more than 67108864 bytes"));
 }
 

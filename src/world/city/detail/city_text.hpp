@@ -29,8 +29,4 @@ std::string material_of_name(std::string_view name);
 /// modelling programs make, with or without a number.
 bool names_ground(std::string_view name);
 
-/// The name inside a folder that a file gives for another, with plain slashes; nothing when it would lie outside: an
-/// absolute path, a drive, a "..". Nothing for control characters either: messages quote names, and are one line.
-std::optional<std::string> name_inside(std::string_view name);
-
 }  // namespace skyloop
