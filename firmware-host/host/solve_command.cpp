@@ -244,7 +244,9 @@ Action add_solve_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("solve", "Positions from a RINEX observation file, by the receiver's engine");
     auto options = std::make_shared<SolveOptions>();
-    command->add_option("OBSERVATIONS", options->observations, "RINEX 2, 3 or 4 observation file, gzip or not")
+    command
+        ->add_option("OBSERVATIONS", options->observations,
+                     "RINEX 2, 3 or 4 observation file, compact (.crx) and packed (.gz, .Z, .zip, …) or not")
         ->required();
     command->add_option("--nav", options->nav, "RINEX navigation file; repeatable")->allow_extra_args(false);
     command->add_option("--sp3", options->sp3, "Precise orbits and clocks in place of the broadcast ones");

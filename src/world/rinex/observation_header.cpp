@@ -65,9 +65,6 @@ Result<void> ObservationHeaderReading::read(LineReader& lines) {
 
 Result<void> ObservationHeaderReading::version_line(const Line& line) {
     const std::string_view label = header_label(line.text);
-    if (label.starts_with("CRINEX VERS"))
-        return observation_error(name_, line.number, "a compact RINEX file (Hatanaka)",
-                                 "plain RINEX observations; crx2rnx unpacks it");
     if (label != "RINEX VERSION / TYPE")
         return observation_error(name_, line.number, line.text.empty() ? "an empty line" : in_quotes(line.text),
                                  "a RINEX header, its label 'RINEX VERSION / TYPE' in columns 61-80");

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/core/text_file.hpp"
+#include "detail/compact_observations.hpp"
 #include "detail/defect_tally.hpp"
 #include "detail/observation_epochs.hpp"
 #include "detail/observation_header.hpp"
@@ -243,7 +244,11 @@ private:
 }  // namespace rinex
 
 Result<ObservationFile> read_observations(std::string_view text, std::string_view name) {
-    return rinex::ObservationReading(rinex::without_byte_order_mark(text), name).read();
+    const std::string_view marked = rinex::without_byte_order_mark(text);
+    if (!rinex::is_compact(marked)) return rinex::ObservationReading(marked, name).read();
+    const auto restored = rinex::from_compact(marked, name);
+    if (!restored) return fail(restored.error());
+    return rinex::ObservationReading(*restored, fmt::format("{}, as RINEX", name)).read();
 }
 
 Result<ObservationFile> read_observation_file(const std::filesystem::path& path) {

@@ -54,12 +54,13 @@ struct ObservationFile {
 /// power failure (flag 1) or a cycle slip record (flag 6). A value that is blank or 0 is not measured (RINEX 3.05,
 /// 6.7). C/N0 is the observation S where there is one, else the middle of the strength digit's step, else 0. The
 /// carrier of a GLONASS satellite without a declared channel is that of channel 0.
-/// Fails with `input` when the text is of another kind or version (Hatanaka's compact form is refused by name), when
-/// the header declares no observation types, or when no epoch can be read.
+/// Texts in Hatanaka's compact form (.crx, .YYd; versions 1.0 and 3.0) are restored first; messages about what was
+/// restored count its lines. Fails with `input` when the text is of another kind or version, or compact and damaged or
+/// cut, when the header declares no observation types, or when no epoch can be read.
 /// @param name of the file, for messages
 Result<ObservationFile> read_observations(std::string_view text, std::string_view name);
 
-/// The same for a file, gzip-compressed or not. Fails as read_text_file and read_observations do.
+/// The same for a file, packed or not. Fails as read_text_file and read_observations do.
 Result<ObservationFile> read_observation_file(const std::filesystem::path& path);
 
 }  // namespace skyloop

@@ -243,7 +243,7 @@ TEST(ObservationReader, RefusesOtherFiles) {
               "a.obs:1: found an empty file; expected observations (RINEX 2.00-2.12, 3.00-3.05 or "
               "4.00-4.02)");
     EXPECT_EQ(error_of(label_line("3.0                 COMPACT RINEX FORMAT", "CRINEX VERS   / TYPE")),
-              "a.obs:1: found a compact RINEX file (Hatanaka); expected plain RINEX observations; crx2rnx unpacks it");
+              "a.obs:1: found the end of the file within the header; expected a whole compact RINEX file");
     EXPECT_THAT(error_of(label_line("     3.04           N: GNSS NAV DATA    M", "RINEX VERSION / TYPE")),
                 HasSubstr("a.obs:1: found file type 'N'"));
     EXPECT_THAT(error_of(label_line("     5.00           OBSERVATION DATA    M", "RINEX VERSION / TYPE")),
