@@ -54,7 +54,11 @@ Result<EngineTask> task_of(const CampaignOptions& options, const OpenedCampaign&
     if (!scenario) return fail(scenario.error());
     if (!out) return fail(out.error());
     const std::size_t shards = options.engine.shards > 0 ? options.engine.shards : default_shards(campaign.plan.size());
-    return EngineTask{campaign.name, *program, *scenario, *out, options_of_shards(options), shards};
+    EngineTask task{campaign.name, *program, *scenario, *out, options_of_shards(options), shards};
+    for (const std::string& file : options.engine.templates)
+        if (auto added = add_engine_template(task.templates, options.engine.name, file); !added)
+            return fail(added.error());
+    return task;
 }
 
 int follow_until_end(const EngineTask& task, std::size_t runs, const Messages& messages) {
@@ -170,15 +174,15 @@ void add_engine_options(CLI::App& command, EngineOptions& options) {
     };
     add("--shards", options.shards, "How many parts an engine gets (default: ten runs each, at most 1000)")
         ->check(CLI::Range(std::size_t{1}, max_shards));
+    add("--engine-template", options.templates, "A file in place of the engine's of that name; repeatable")
+        ->allow_extra_args(false);
     CLI::Option* submit =
-        command.add_flag("--submit", options.submit, "Also call the engine, not only write its files");
+        command.add_flag("--submit", options.submit, "Also call the engine, not only write its files")->needs(engine);
     command.add_flag("--dry-run", options.dry_run, "Only write the engine's files, as without --submit")
         ->needs(engine)
         ->excludes(submit);
-    command.add_flag("--follow", options.follow,
-                     "slurm: stay until all is gathered; alone: of what was submitted before");
-    for (const char* flag : {"--submit", "--follow"})
-        command.get_option(flag)->needs(engine);
+    command.add_flag("--follow", options.follow, "slurm: stay until all is gathered; alone: of earlier jobs")
+        ->needs(engine);
     // Of one engine, which is told first; --engine was read before them, for it was added before.
     const auto add_for = [&](std::string_view one, const char* name, auto& value, std::string_view meaning) {
         CLI::Option* option = add(name, value, fmt::format("{}: {}", one, meaning).c_str());

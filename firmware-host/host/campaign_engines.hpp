@@ -14,6 +14,7 @@ struct EngineOptions {
     std::string name;        ///< slurm, kubernetes, parallel; empty: none, the campaign is run here
     std::size_t shards = 0;  ///< 0: as many as suit the runs
     bool submit = false, follow = false, dry_run = false;
+    std::vector<std::string> templates;  ///< files of the site, in place of the engine's
     std::string partition, time_limit;
     std::vector<std::string> sbatch_options;
     std::filesystem::path hosts;  ///< for parallel; empty: here alone

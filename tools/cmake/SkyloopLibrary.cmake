@@ -21,6 +21,19 @@ function(skyloop_room_folders result)
     set(${result} ${folders} PARENT_SCOPE)
 endfunction()
 
+# skyloop_embed(RESULT FOLDER FUNCTION): a source that holds the files of a folder beside the list that calls it, and defines
+# FUNCTION(), which gives them.
+function(skyloop_embed result folder function)
+    set(script ${PROJECT_SOURCE_DIR}/tools/cmake/EmbedFiles.cmake)
+    set(source ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
+    file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*)
+    add_custom_command(OUTPUT ${source}
+        COMMAND ${CMAKE_COMMAND} -DFOLDER=${CMAKE_CURRENT_SOURCE_DIR}/${folder} -DFUNCTION=${function} -DOUT=${source}
+                -P ${script}
+        DEPENDS ${files} ${script} VERBATIM)
+    set(${result} ${source} PARENT_SCOPE)
+endfunction()
+
 # The rooms that `room` may include, as written in the table.
 function(skyloop_layer_row room result)
     file(STRINGS ${SKYLOOP_LAYERS_FILE} rows REGEX "^${room}[ ]*:")

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
+#include "campaigns/engines/engine_template.hpp"
 
 namespace skyloop {
 
@@ -21,6 +22,7 @@ struct EngineTask {
     std::filesystem::path out;           ///< the campaign's folder, absolute; the same for whoever runs a shard
     std::vector<std::string> options{};  ///< the campaign's own, as they were given: `--seeds`, `1..100`
     std::size_t shards = 1;              ///< 1 to `max_shards`
+    EngineTemplates templates{};         ///< the site's own
 };
 
 /// More than any engine takes in one array as it is configured by default (Slurm: MaxArraySize, 1001).

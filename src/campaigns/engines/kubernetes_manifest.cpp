@@ -4,18 +4,16 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
+#include "base/core/utf8.hpp"
 #include "campaigns/engines/quoting.hpp"
-#include "detail/shell_parts.hpp"
 
 namespace skyloop {
 namespace {
 
 // An object's name: RFC 1123, as Kubernetes narrows it ("Object Names and IDs", DNS label names).
 constexpr std::size_t longest_label = 63;
-
-// Seconds between SIGTERM and SIGKILL: a run of a campaign ends well within.
-constexpr int grace_s = 45;
 
 bool is_label(std::string_view name, std::string_view also = {}) {
     const auto inner = [&](char c) {
@@ -44,20 +42,10 @@ bool lies_in(const std::filesystem::path& file, const std::filesystem::path& fol
     return !inside.empty() && *inside.begin() != "..";
 }
 
-// Well-formed UTF-8 (RFC 3629, section 4, but for surrogates and overlong forms, which a path has no use for).
 bool is_utf8(std::string_view text) {
-    for (std::size_t i = 0; i < text.size();) {
-        const auto first = static_cast<unsigned char>(text[i++]);
-        const int more = first < 0x80                    ? 0
-                         : first >= 0xc2 && first < 0xe0 ? 1
-                         : first >= 0xe0 && first < 0xf0 ? 2
-                         : first >= 0xf0 && first < 0xf5 ? 3
-                                                         : -1;
-        if (more < 0) return false;
-        for (int k = 0; k < more; ++k, ++i)
-            if (i >= text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
-    }
-    return true;
+    while (const std::size_t length = utf8_length(text))
+        text.remove_prefix(length);
+    return text.empty();
 }
 
 Result<void> check_names(const KubernetesSettings& settings) {
@@ -99,27 +87,13 @@ Result<void> check_places(const EngineTask& task, const KubernetesSettings& sett
     return {};
 }
 
-std::string indented(std::string_view text, std::string_view by) {
-    std::string out;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        out += fmt::format("{}{}\n", by, text.substr(at, end - at));
-        at = end + 1;
-    }
-    return out;
-}
-
-std::string arguments(const std::vector<std::string>& command) {
-    std::string lines = "            - shard\n";  // the script's name for itself, $0
+// The image's own program.
+std::string arguments(std::vector<std::string> command) {
+    command.front() = "skyloop";
+    std::string lines;
     for (const std::string& word : command)
-        lines += fmt::format("            - {}\n", yaml_quoted(kubernetes_literal(word)));
+        lines += fmt::format("- {}\n", yaml_quoted(kubernetes_literal(word)));
     return lines;
-}
-
-std::string head(const std::string& name, const KubernetesSettings& settings) {
-    std::string text = fmt::format("apiVersion: batch/v1\nkind: Job\nmetadata:\n  name: {}\n", yaml_quoted(name));
-    if (!settings.name_space.empty()) text += fmt::format("  namespace: {}\n", yaml_quoted(settings.name_space));
-    return text + "  labels:\n    app.kubernetes.io/name: skyloop\n    app.kubernetes.io/component: campaign\nspec:\n";
 }
 
 // The results' folder belongs to who writes the manifest: the image's own user, and a superuser without capabilities,
@@ -127,107 +101,25 @@ std::string head(const std::string& name, const KubernetesSettings& settings) {
 // file by file unless their root has it already.
 std::string identity(const KubernetesSettings& settings) {
     if (settings.user == 0) return {};
-    return fmt::format(R"(      securityContext:
-        runAsUser: {}
-        runAsGroup: {}
-        fsGroup: {}
-        fsGroupChangePolicy: OnRootMismatch
-)",
-                       settings.user, settings.group, settings.group);
+    return fmt::format(
+        "securityContext:\n  runAsUser: {}\n  runAsGroup: {}\n  fsGroup: {}\n  fsGroupChangePolicy: OnRootMismatch\n",
+        settings.user, settings.group, settings.group);
 }
 
-std::string pod(const KubernetesSettings& settings, const std::string& script,
-                const std::vector<std::string>& command) {
-    return fmt::format(R"(  template:
-    metadata:
-      labels:
-        app.kubernetes.io/name: skyloop
-        app.kubernetes.io/component: campaign
-    spec:
-      restartPolicy: Never
-      automountServiceAccountToken: false
-      terminationGracePeriodSeconds: {}
-{}      containers:
-        - name: skyloop
-          image: {}
-          command:
-            - /bin/sh
-            - -c
-            - |
-{}          args:
-{}          resources:
-            requests:
-              cpu: "1"
-              memory: {}
-            limits:
-              memory: {}
-          securityContext:
-            allowPrivilegeEscalation: false
-            capabilities:
-              drop: [ALL]
-          volumeMounts:
-            - name: campaign
-              mountPath: {}
-      volumes:
-        - name: campaign
-          persistentVolumeClaim:
-            claimName: {}
-)",
-                       grace_s, identity(settings), yaml_quoted(settings.image), indented(script, "              "),
-                       arguments(command), yaml_quoted(settings.memory), yaml_quoted(settings.memory),
-                       yaml_quoted(settings.mount.string()), yaml_quoted(settings.claim));
-}
-
-// Exit code 3, a failed verdict, is a result.
-std::string script_for(std::string_view more_words) {
-    std::string script;
-    if (!more_words.empty()) script += fmt::format("set -- \"$@\" {}\n", more_words);
-    return script + std::string(run_child) + "[ \"$code\" -ne 3 ] || code=0\nexit \"$code\"\n";
-}
-
-std::string shards_manifest(const EngineTask& task, const KubernetesSettings& settings) {
-    std::vector<std::string> command = shard_command(task);
-    command.front() = "skyloop";  // the image's
-    std::string text = fmt::format(R"(# The shards of a campaign, one in each index of the job.
-#   kubectl apply -f {}
-)",
-                                   shell_quoted((task.out / "kubernetes" / "campaign.yaml").string()));
-    text += head("skyloop-" + plain_name(task.name), settings);
-    text += fmt::format(R"(  completionMode: Indexed
-  completions: {}
-  parallelism: {}
-  backoffLimitPerIndex: {}
-  # Never two containers at the same shard.
-  podReplacementPolicy: Failed
-  podFailurePolicy:
-    rules:
-      # Evicted or preempted, or its node was lost: that is no try.
-      - action: Ignore
-        onPodConditions:
-          - type: DisruptionTarget
-            status: "True"
-      # The campaign cannot be: every shard would say the same.
-      - action: FailJob
-        onExitCodes:
-          containerName: skyloop
-          operator: In
-          values: [2]
-)",
-                        task.shards, std::min(settings.parallelism, task.shards), settings.retries);
-    return text + pod(settings, script_for(fmt::format("--jobs 1 --shard \"$JOB_COMPLETION_INDEX/{}\"", task.shards)),
-                      command);
-}
-
-std::string gather_manifest(const EngineTask& task, const KubernetesSettings& settings) {
-    std::vector<std::string> command = gather_command(task);
-    command.front() = "skyloop";
-    const std::string name = "skyloop-" + plain_name(task.name);
-    std::string text = fmt::format(
-        "# Merges the results of job {}, once that is complete:\n"
-        "#   kubectl wait --for=condition=complete --timeout=24h job/{}\n#   kubectl apply -f {}\n",
-        name, name, shell_quoted((task.out / "kubernetes" / "gather.yaml").string()));
-    text += head(name + "-gather", settings) + fmt::format("  backoffLimit: {}\n", settings.retries);
-    return text + pod(settings, script_for({}), command);
+// What both manifests have.
+std::vector<TemplateValue> kubernetes_values(const EngineTask& task, const KubernetesSettings& settings,
+                                             const std::vector<std::string>& command, const char* file) {
+    const std::string& space = settings.name_space;
+    return {{"command", arguments(command)},
+            {"file", shell_quoted((task.out / "kubernetes" / file).string())},
+            {"job", "skyloop-" + plain_name(task.name)},
+            {"namespace", space.empty() ? std::string() : "namespace: " + yaml_quoted(space)},
+            {"identity", identity(settings)},
+            {"image", yaml_quoted(settings.image)},
+            {"memory", yaml_quoted(settings.memory)},
+            {"mount", yaml_quoted(settings.mount.string())},
+            {"claim", yaml_quoted(settings.claim)},
+            {"retries", std::to_string(settings.retries)}};
 }
 
 }  // namespace
@@ -236,7 +128,15 @@ Result<KubernetesManifests> kubernetes_manifests(const EngineTask& task, const K
     if (auto good = check_task(task); !good) return fail(good.error());
     if (auto good = check_names(settings); !good) return fail(good.error());
     if (auto good = check_places(task, settings); !good) return fail(good.error());
-    return KubernetesManifests{shards_manifest(task, settings), gather_manifest(task, settings)};
+    auto values = kubernetes_values(task, settings, shard_command(task), "campaign.yaml");
+    values.push_back({"shards", std::to_string(task.shards)});
+    values.push_back({"parallelism", std::to_string(std::min(settings.parallelism, task.shards))});
+    auto shards = fill_engine_template(task.templates, "kubernetes.yaml", values);
+    if (!shards) return fail(shards.error());
+    auto gather = fill_engine_template(task.templates, "kubernetes_gather.yaml",
+                                       kubernetes_values(task, settings, gather_command(task), "gather.yaml"));
+    if (!gather) return fail(gather.error());
+    return KubernetesManifests{std::move(*shards), std::move(*gather)};
 }
 
 }  // namespace skyloop

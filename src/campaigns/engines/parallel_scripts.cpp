@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <utility>
 
 #include "base/core/digest.hpp"
 #include "campaigns/engines/engine_files.hpp"
 #include "campaigns/engines/quoting.hpp"
-#include "detail/shell_parts.hpp"
 
 namespace skyloop {
 namespace {
@@ -31,56 +31,6 @@ Result<void> check_hosts(std::string_view hosts) {
     return {};
 }
 
-std::string shard_script(const EngineTask& task) {
-    std::string script =
-        "#!/bin/sh\n# shard.sh I: one shard of a campaign. Called by campaign.sh, here or on another host.\nset -u\n";
-    script += fmt::format("bad={}\n", shell_quoted((parallel_folder(task) / "bad").string()));
-    script += "# One has said that the campaign cannot be: the others need not.\n[ ! -e \"$bad\" ] || exit 2\n";
-    script += fmt::format("set -- {} --jobs 1 --shard \"$1/{}\"\n", shell_quoted(shard_command(task)), task.shards);
-    script += run_child;
-    return script +
-           "case $code in\n    0 | 3) exit 0 ;; # 3: a verdict failed, which is a result\n"
-           "    2) : >\"$bad\" ;;\nesac\nexit \"$code\"\n";
-}
-
-// GNU parallel reads whole commands from its input, in which it replaces nothing.
-constexpr std::string_view run_all = R"(log="$folder/joblog-$joblog"
-eta=
-[ ! -t 2 ] || eta=--eta
-interrupted=
-trap 'interrupted=yes' INT TERM
-rm -f -- "$folder/bad"
-shard=0
-while [ "$shard" -lt "$shards" ]; do
-    printf '%s %s\n' "$shard_call" "$shard"
-    shard=$((shard + 1))
-done | PARALLEL_SHELL=/bin/sh parallel --will-cite --sshloginfile "$folder/hosts" --joblog "$log" --resume-failed \
-    --retries "$retries" --termseq TERM,20000,TERM,10000,KILL,100 $eta
-failed=$?
-[ -z "$interrupted" ] || exit 75
-[ ! -e "$folder/bad" ] || exit 2
-)";
-
-std::string campaign_script(const EngineTask& task, const ParallelSettings& settings, const std::string& shard) {
-    const std::string call = shell_quoted((parallel_folder(task) / "campaign.sh").string());
-    std::string script =
-        "#!/bin/sh\n# All shards of a campaign by GNU parallel on the hosts in the file beside this, then their "
-        "gathering. Called by\n";
-    script += fmt::format("#   sh {}\n# Called again, it goes on.\nset -u\n", call);
-    script += fmt::format("folder={}\nshards={}\n", shell_quoted(parallel_folder(task).string()), task.shards);
-    // parallel's own count: 1 is no second try.
-    script += fmt::format("retries={}\n", settings.retries + 1);
-    script += fmt::format("joblog={:016x}\n", fnv1a_64(settings.scenario_text, fnv1a_64(shard)));
-    script += fmt::format("shard_call={}\n",
-                          shell_quoted("sh " + shell_quoted((parallel_folder(task) / "shard.sh").string())));
-    script += run_all;
-    script += shell_quoted(gather_command(task));
-    return script +
-           "\ngathered=$?\n[ \"$failed\" -eq 0 ] || {\n    printf 'shards failed; see %s\\n' \"$log\" >&2\n    exit "
-           "1\n}\n"
-           "exit \"$gathered\"\n";
-}
-
 }  // namespace
 
 std::filesystem::path parallel_folder(const EngineTask& task) { return task.out / "parallel"; }
@@ -88,8 +38,24 @@ std::filesystem::path parallel_folder(const EngineTask& task) { return task.out 
 Result<ParallelScripts> parallel_scripts(const EngineTask& task, const ParallelSettings& settings) {
     if (auto good = check_task(task); !good) return fail(good.error());
     if (auto good = check_hosts(settings.hosts); !good) return fail(good.error());
-    const std::string shard = shard_script(task);
-    return ParallelScripts{campaign_script(task, settings, shard), shard, settings.hosts};
+    const auto folder = parallel_folder(task);
+    const auto inside = [&](const char* name) { return shell_quoted((folder / name).string()); };
+    auto shard = fill_engine_template(task.templates, "parallel_shard.sh",
+                                      {{"command", shell_quoted(shard_command(task))},
+                                       {"shards", std::to_string(task.shards)},
+                                       {"bad", inside("bad")}});
+    if (!shard) return fail(shard.error());
+    auto campaign = fill_engine_template(
+        task.templates, "parallel.sh",
+        {{"shard_call", shell_quoted("sh " + inside("shard.sh"))},
+         {"script", inside("campaign.sh")},
+         {"folder", shell_quoted(folder.string())},
+         {"shards", std::to_string(task.shards)},
+         {"tries", std::to_string(settings.retries + 1)},  // parallel's own count: 1 is no second try
+         {"joblog", fmt::format("{:016x}", fnv1a_64(settings.scenario_text, fnv1a_64(*shard)))},
+         {"gather", shell_quoted(gather_command(task))}});
+    if (!campaign) return fail(campaign.error());
+    return ParallelScripts{std::move(*campaign), std::move(*shard), settings.hosts};
 }
 
 Result<void> write_parallel_files(const EngineTask& task, const ParallelScripts& scripts) {

@@ -5,10 +5,11 @@
 namespace skyloop {
 namespace {
 
-std::string with_backslashes(std::string_view text, std::string_view before) {
+// The text with `with` before each of some characters.
+std::string escaped(std::string_view text, std::string_view some, char with) {
     std::string out;
     for (const char c : text) {
-        if (before.find(c) != std::string_view::npos) out += '\\';
+        if (some.find(c) != std::string_view::npos) out += with;
         out += c;
     }
     return out;
@@ -16,32 +17,22 @@ std::string with_backslashes(std::string_view text, std::string_view before) {
 
 }  // namespace
 
-std::string sbatch_quoted(std::string_view word) { return '"' + with_backslashes(word, "\"\\") + '"'; }
+std::string sbatch_quoted(std::string_view word) { return '"' + escaped(word, "\"\\", '\\') + '"'; }
 
-std::string sbatch_pattern(std::string_view path) {
-    std::string out;
-    for (const char c : path)
-        out += c == '%' ? "%%" : std::string(1, c);
-    return out;
-}
+std::string sbatch_pattern(std::string_view path) { return escaped(path, "%", '%'); }
+
+std::string kubernetes_literal(std::string_view text) { return escaped(text, "$", '$'); }
 
 std::string yaml_quoted(std::string_view text) {
     std::string out = "\"";
-    for (const char c : text) {
+    for (const char c : escaped(text, "\"\\", '\\')) {
         const auto byte = static_cast<unsigned char>(c);
         if (byte < 0x20 || byte == 0x7f)
             out += fmt::format("\\x{:02x}", byte);
         else
-            out += with_backslashes(std::string_view(&c, 1), "\"\\");
+            out += c;
     }
     return out + '"';
-}
-
-std::string kubernetes_literal(std::string_view text) {
-    std::string out;
-    for (const char c : text)
-        out += c == '$' ? "$$" : std::string(1, c);
-    return out;
 }
 
 }  // namespace skyloop

@@ -4,14 +4,12 @@
 
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include "campaigns/engines/quoting.hpp"
 
 namespace skyloop {
 namespace {
-
-// Seconds before the end of a shard's time at which it is told: a run of a campaign ends well within.
-constexpr int warning_time_s = 45;
 
 // What the script says itself; another value would break what follows from it.
 constexpr std::array<std::string_view, 10> own_options{"--array",      "-a",          "--dependency", "-d", "--wrap",
@@ -36,114 +34,39 @@ Result<void> check_option(const std::string& option) {
     return {};
 }
 
-std::string directive(std::string_view option, std::string_view value = {}) {
-    const std::string word = value.empty() ? std::string(option) : fmt::format("{}={}", option, value);
-    return fmt::format("#SBATCH {}\n", sbatch_quoted(word));
+std::string directive(std::string_view option) { return fmt::format("#SBATCH {}\n", sbatch_quoted(option)); }
+
+// What both scripts have.
+std::vector<TemplateValue> slurm_values(const EngineTask& task, const std::vector<std::string>& command,
+                                        const std::string& script, const std::string& log) {
+    const auto folder = slurm_folder(task);
+    return {{"command", shell_quoted(command)},
+            {"script", shell_quoted((folder / script).string())},
+            {"job", "skyloop-" + plain_name(task.name)},
+            {"output", sbatch_quoted("--output=" + sbatch_pattern((folder / "log").string()) + "/" + log)},
+            {"exits", shell_quoted((folder / "exit").string())}};
 }
 
-std::string users_directives(const SlurmSettings& settings) {
-    std::string lines;
-    if (!settings.partition.empty()) lines += directive("--partition", settings.partition);
+Result<SlurmScripts> filled_scripts(const EngineTask& task, const SlurmSettings& settings) {
+    std::string options;
+    if (!settings.partition.empty()) options += directive("--partition=" + settings.partition);
     for (const std::string& option : settings.options)
-        lines += directive(option);
-    return lines;
-}
-
-std::string directives_of_shards(const EngineTask& task, const SlurmSettings& settings) {
-    const std::string log = sbatch_pattern((slurm_folder(task) / "log").string()) + "/%a.txt";
-    std::string lines = directive("--job-name", "skyloop-" + plain_name(task.name));
-    lines += directive("--array", fmt::format("0-{}", task.shards - 1));
-    lines += directive("--ntasks", "1") + directive("--cpus-per-task", std::to_string(settings.processors));
-    lines += directive("--requeue") + directive("--open-mode", "append") + directive("--output", log);
-    lines += directive("--signal", fmt::format("B:USR1@{}", warning_time_s));
-    if (!settings.time_limit.empty()) lines += directive("--time", settings.time_limit);
-    return lines + users_directives(settings);
-}
-
-// The file appears whole or not at all: whoever follows may look at any time.
-constexpr std::string_view leave_code = R"(leave_code() { # CODE
-    printf '%s\n' "$1" >"$exits/.$name.$$" && mv -f -- "$exits/.$name.$$" "$exits/$name"
-}
-)";
-
-constexpr std::string_view run_shard = R"sh(
-rm -f -- "$exits/$name"
-results="$shards_folder/$name-of-$shards.csv"
-size_of_results() { stat --format=%s -- "$results" 2>/dev/null || echo 0; }
-before=$(size_of_results)
-
-# The time is nearly over: the shard ends the run it is at, keeps all results, and goes on in another job. srun does not
-# pass SIGTERM on, but gives its step up.
-step=
-late=
-end_early() {
-    late=yes
-    [ -z "$step" ] || scancel --signal=TERM "$SLURM_JOB_ID"
-}
-trap end_early USR1
-
-printf 'shard %s/%s on %s, start %s\n' "$name" "$shards" "${SLURMD_NODENAME:-?}" "$((${SLURM_RESTART_COUNT:-0} + 1))"
-srun --ntasks=1 --cpus-per-task="${SLURM_CPUS_PER_TASK:-1}" -- \
-    "${shard_command[@]}" --jobs "${SLURM_CPUS_PER_TASK:-1}" --shard "$name/$shards" &
-step=$!
-[ -z "$late" ] || end_early
-# A signal ends a wait before the step has ended; then there is still somebody to wait for.
-while :; do
-    wait "$step"
-    code=$?
-    kill -0 "$step" 2>/dev/null || break
-done
-leave_code "$code"
-
-again=
-case $code in
-    0 | 3) exit 0 ;; # 3: a verdict failed, which is a result
-    2) exit 2 ;;     # the campaign cannot be; another try would say the same
-esac
-# Nobody is asked to go on for ever: a shard that ran out of time must have got on.
-if [ -n "$late" ]; then
-    [ "$(size_of_results)" -gt "$before" ] && again=yes
-elif [ "${SLURM_RESTART_COUNT:-0}" -lt "$retries" ]; then
-    again=yes
-fi
-if [ -n "$again" ]; then
-    printf 'shard %s/%s ended with code %s: back into the queue\n' "$name" "$shards" "$code"
-    # It ends this script too; Slurm may take a moment.
-    scontrol requeue "$SLURM_JOB_ID" && sleep 60
-fi
-exit "$code"
-)sh";
-
-std::string shards_script(const EngineTask& task, const SlurmSettings& settings) {
-    std::string script = "#!/bin/bash\n# The shards of a campaign, one in each task of a job array. Submitted by\n";
-    script += fmt::format("#   sbatch {}\n", shell_quoted((slurm_folder(task) / "campaign.sbatch").string()));
-    script += directives_of_shards(task, settings);
-    script += "set -u\nname=${SLURM_ARRAY_TASK_ID:?expected a task of a job array, as sbatch makes of this script}\n";
-    script += fmt::format("shards={}\nretries={}\n", task.shards, settings.retries);
-    script += fmt::format("exits={}\n", shell_quoted((slurm_folder(task) / "exit").string()));
-    script += fmt::format("shards_folder={}\n", shell_quoted((task.out / "shards").string()));
-    script += fmt::format("shard_command=({})\n", shell_quoted(shard_command(task)));
-    script += "mkdir -p -- \"$exits\" || exit 1\n";
-    return script + std::string(leave_code) + std::string(run_shard);
-}
-
-std::string gather_script(const EngineTask& task, const SlurmSettings& settings) {
-    std::string script =
-        "#!/bin/bash\n# Merges the results of a campaign's shards, whatever became of them. Submitted by\n";
-    script += fmt::format("#   sbatch --dependency=afterany:JOB {}\n",
-                          shell_quoted((slurm_folder(task) / "gather.sbatch").string()));
-    script += directive("--job-name", "skyloop-" + plain_name(task.name) + "-gather");
-    script += directive("--ntasks", "1") + directive("--requeue") + directive("--open-mode", "truncate");
-    script += directive("--output", sbatch_pattern((slurm_folder(task) / "log").string()) + "/gather.txt");
-    script += users_directives(settings);
-    script += fmt::format("set -u\nname=gather\nexits={}\n", shell_quoted((slurm_folder(task) / "exit").string()));
-    script += "mkdir -p -- \"$exits\" || exit 1\n" + std::string(leave_code);
-    script += "rm -f -- \"$exits/$name\"\n";
-    return script +
-           fmt::format(
-               "{}\ncode=$?\nleave_code \"$code\"\n# A failed verdict is a result.\n[ \"$code\" -ne 3 ] || code=0\n"
-               "exit \"$code\"\n",
-               shell_quoted(gather_command(task)));
+        options += directive(option);
+    const std::string time = settings.time_limit.empty() ? std::string() : directive("--time=" + settings.time_limit);
+    auto values = slurm_values(task, shard_command(task), "campaign.sbatch", "%a.txt");
+    values.insert(values.end(), {{"options", time + options},
+                                 {"last_shard", std::to_string(task.shards - 1)},
+                                 {"shards", std::to_string(task.shards)},
+                                 {"processors", std::to_string(settings.processors)},
+                                 {"retries", std::to_string(settings.retries)},
+                                 {"shards_folder", shell_quoted((task.out / "shards").string())}});
+    auto shards = fill_engine_template(task.templates, "slurm.sbatch", values);
+    if (!shards) return fail(shards.error());
+    values = slurm_values(task, gather_command(task), "gather.sbatch", "gather.txt");
+    values.push_back({"options", options});
+    auto gather = fill_engine_template(task.templates, "slurm_gather.sbatch", values);
+    if (!gather) return fail(gather.error());
+    return SlurmScripts{std::move(*shards), std::move(*gather)};
 }
 
 }  // namespace
@@ -158,7 +81,7 @@ Result<SlurmScripts> slurm_scripts(const EngineTask& task, const SlurmSettings& 
     for (const std::string& option : options)
         if (auto good = check_option(option); !good) return fail(good.error());
     if (settings.processors < 1) return fail(ErrorCode::usage, "--jobs: 0; expected at least 1 processor for a shard");
-    return SlurmScripts{shards_script(task, settings), gather_script(task, settings)};
+    return filled_scripts(task, settings);
 }
 
 }  // namespace skyloop

@@ -41,8 +41,8 @@ std::string_view page_content_type(std::string_view path) {
 
 std::optional<ControlResponse> page_answer(std::string_view path) {
     if (path == "/") path = "/index.html";
-    for (const PageFile& file : page_files()) {
-        if (file.path != path) continue;
+    for (const EmbeddedFile& file : page_files()) {
+        if (path != fmt::format("/{}", file.name)) continue;
         ControlResponse response;
         response.content_type = page_content_type(path);
         response.body = file.content;

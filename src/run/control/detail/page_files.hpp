@@ -2,16 +2,12 @@
 #pragma once
 
 #include <span>
-#include <string_view>
+
+#include "base/core/embedded_file.hpp"
 
 namespace skyloop {
 
-struct PageFile {
-    std::string_view path;  ///< "/index.html"
-    std::string_view content;
-};
-
-/// Those of src/run/control/page, by path. Written by tools/cmake/EmbedPage.cmake.
-std::span<const PageFile> page_files();
+/// Those of src/run/control/page, by name.
+std::span<const EmbeddedFile> page_files();
 
 }  // namespace skyloop

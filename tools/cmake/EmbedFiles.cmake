@@ -1,0 +1,35 @@
+# cmake -DFOLDER=FOLDER -DFUNCTION=NAME -DOUT=FILE -P EmbedFiles.cmake: the files of a folder as a C++ source, which defines
+# std::span<const EmbeddedFile> NAME() (base/core/embedded_file.hpp).
+file(GLOB names RELATIVE ${FOLDER} ${FOLDER}/*)
+list(SORT names)
+set(arrays "")
+set(rows "")
+set(number 0)
+foreach(name IN LISTS names)
+    file(READ ${FOLDER}/${name} hex HEX)
+    if(hex STREQUAL "")
+        message(FATAL_ERROR "${FOLDER}/${name} is empty; expected a file to embed")
+    endif()
+    string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${hex}")
+    string(APPEND arrays "constexpr char embedded_${number}[] = {${bytes}};\n")
+    string(APPEND rows "    {\"${name}\", {embedded_${number}, sizeof(embedded_${number})}},\n")
+    math(EXPR number "${number} + 1")
+endforeach()
+file(WRITE ${OUT} "#include \"base/core/embedded_file.hpp\"
+
+namespace skyloop {
+
+std::span<const EmbeddedFile> ${FUNCTION}();
+
+namespace {
+
+${arrays}
+constexpr EmbeddedFile ${FUNCTION}_table[] = {
+${rows}};
+
+}  // namespace
+
+std::span<const EmbeddedFile> ${FUNCTION}() { return ${FUNCTION}_table; }
+
+}  // namespace skyloop
+")
