@@ -1,8 +1,6 @@
 #include "messages.hpp"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
-
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -25,40 +23,33 @@ std::string lines_on_a_terminal(std::string_view text) {
 
 }  // namespace
 
-Messages::Messages(Verbosity verbosity)
-    : verbosity_(verbosity),
-      logger_(std::make_shared<spdlog::logger>("skyloop", std::make_shared<spdlog::sinks::stderr_sink_st>())) {
-    logger_->set_pattern("%v");
-    logger_->set_level(verbosity.quiet     ? spdlog::level::warn
-                       : verbosity.verbose ? spdlog::level::debug
-                                           : spdlog::level::info);
-}
-
-void Messages::say(int level, const std::string& text) const {
-    const auto weight = static_cast<spdlog::level::level_enum>(level);
-    const auto word = spdlog::level::to_string_view(weight);
-    const std::string name(word.data(), word.size());
-    if (verbosity_.json) {
+void Messages::say(std::string_view level, const std::string& text) const {
+    std::string line;
+    if (verbosity_.json)
         // Bytes of a file name need not be UTF-8; a message must not fail over them.
-        const nlohmann::json line{{"level", name}, {"message", text}};
-        logger_->log(weight, "{}", line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-    } else if (weight >= spdlog::level::warn) {
-        logger_->log(weight, "skyloop: {}{}", weight == spdlog::level::warn ? "warning: " : "",
-                     lines_on_a_terminal(text));
-    } else {
-        logger_->log(weight, "{}", lines_on_a_terminal(text));
-    }
-    logger_->flush();
+        line = nlohmann::json{{"level", level}, {"message", text}}.dump(-1, ' ', false,
+                                                                        nlohmann::json::error_handler_t::replace);
+    else
+        line = (level == "error"     ? "skyloop: "
+                : level == "warning" ? "skyloop: warning: "
+                                     : "") +
+               lines_on_a_terminal(text);
+    line += '\n';
+    std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
-void Messages::detail(const std::string& text) const { say(spdlog::level::debug, text); }
-void Messages::info(const std::string& text) const { say(spdlog::level::info, text); }
-void Messages::warning(const std::string& text) const { say(spdlog::level::warn, text); }
+void Messages::detail(const std::string& text) const {
+    if (verbosity_.verbose && !verbosity_.quiet) say("debug", text);
+}
+void Messages::info(const std::string& text) const {
+    if (!verbosity_.quiet) say("info", text);
+}
+void Messages::warning(const std::string& text) const { say("warning", text); }
 
 int Messages::error(const Error& error) const {
     std::istringstream lines(error.message);
     for (std::string line; std::getline(lines, line);)
-        say(spdlog::level::err, line);
+        say("error", line);
     return exit_code(error);
 }
 

@@ -1,14 +1,10 @@
 /// What the program says to its user, on stderr.
 #pragma once
 
-#include <memory>
 #include <string>
+#include <string_view>
 
 #include "base/core/result.hpp"
-
-namespace spdlog {
-class logger;
-}
 
 namespace skyloop::host {
 
@@ -22,7 +18,7 @@ struct Verbosity {
 /// Lines on stderr, each with its weight.
 class Messages {
 public:
-    explicit Messages(Verbosity verbosity);
+    explicit Messages(Verbosity verbosity) : verbosity_(verbosity) {}
     void detail(const std::string& text) const;
     void info(const std::string& text) const;
     void warning(const std::string& text) const;
@@ -31,9 +27,8 @@ public:
     [[nodiscard]] const Verbosity& verbosity() const { return verbosity_; }
 
 private:
-    void say(int level, const std::string& text) const;
+    void say(std::string_view level, const std::string& text) const;
     Verbosity verbosity_;
-    std::shared_ptr<spdlog::logger> logger_;
 };
 
 /// 2 for a misuse or a bad file, 1 when the outside world refused.

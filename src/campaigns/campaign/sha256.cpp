@@ -1,32 +1,22 @@
 #include "campaigns/campaign/sha256.hpp"
 
-#include <fmt/format.h>
-#include <openssl/evp.h>
+#include <sha2.h>
 
 #include <array>
-#include <new>
+#include <cstdint>
 
 namespace skyloop {
 
-void Sha256::Free::operator()(evp_md_ctx_st* context) const { EVP_MD_CTX_free(context); }
-
-// Of what may fail here, only memory can run out.
-Sha256::Sha256() : context_(EVP_MD_CTX_new()) {
-    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1) throw std::bad_alloc();
-}
+Sha256::Sha256() : context_(std::make_unique<SHA2_CTX>()) { SHA256Init(context_.get()); }
+Sha256::~Sha256() = default;
 
 void Sha256::add(std::string_view bytes) {
-    if (EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) != 1) throw std::bad_alloc();
+    SHA256Update(context_.get(), reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
 std::string Sha256::hex() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-    unsigned size = 0;
-    if (EVP_DigestFinal_ex(context_.get(), digest.data(), &size) != 1) throw std::bad_alloc();
-    std::string text;
-    for (unsigned i = 0; i < size; ++i)
-        text += fmt::format("{:02x}", digest.at(i));
-    return text;
+    std::array<char, SHA256_DIGEST_STRING_LENGTH> text{};
+    return SHA256End(context_.get(), text.data());
 }
 
 std::string sha256_hex(std::string_view bytes) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-struct evp_md_ctx_st;  // OpenSSL's
+struct _SHA2_CTX;  // libmd's
 
 namespace skyloop {
 
@@ -13,15 +13,15 @@ namespace skyloop {
 class Sha256 {
 public:
     Sha256();
+    ~Sha256();
+    Sha256(const Sha256&) = delete;
+    Sha256& operator=(const Sha256&) = delete;
     void add(std::string_view bytes);
     /// 64 hexadecimal digits of everything that was added. Nothing may be added afterwards.
     [[nodiscard]] std::string hex();
 
 private:
-    struct Free {
-        void operator()(evp_md_ctx_st* context) const;
-    };
-    std::unique_ptr<evp_md_ctx_st, Free> context_;
+    std::unique_ptr<_SHA2_CTX> context_;
 };
 
 /// 64 hexadecimal digits.
