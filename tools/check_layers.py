@@ -15,7 +15,7 @@ import source_tree
 # Package, how its includes begin, and the folders or files that may have them; None: all. This is the only place where
 # fences are written.
 FENCES = [
-    ("Eigen", ("Eigen/",), None),
+    ("Eigen", ("Eigen/", "unsupported/Eigen/"), None),
     ("tl::expected", ("tl/",), None),
     ("fmt", ("fmt/",), None),
     ("zlib", ("zlib.h", "zconf.h"), {"core"}),

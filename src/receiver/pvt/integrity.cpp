@@ -1,45 +1,11 @@
 #include "receiver/pvt/integrity.hpp"
 
-#include <cmath>
+#include <boost/math/special_functions/gamma.hpp>
 #include <limits>
 #include <utility>
 
 namespace skyloop {
 namespace {
-
-constexpr int most_terms = 1000;
-constexpr double negligible = 1e-16;
-
-// Lower function by its series, upper function by its continued fraction; both less the common factor.
-double gamma_series(double a, double x) {
-    double term = 1 / a;
-    double sum = term;
-    for (int n = 1; n < most_terms && term > sum * negligible; ++n) {
-        term *= x / (a + n);
-        sum += term;
-    }
-    return sum;
-}
-
-double gamma_fraction(double a, double x) {
-    constexpr double tiny = 1e-300;
-    double b = x + 1 - a;
-    double c = 1 / tiny;
-    double d = 1 / b;
-    double h = d;
-    for (int n = 1; n < most_terms; ++n) {
-        const double an = -n * (n - a);
-        b += 2;
-        d = an * d + b;
-        if (std::abs(d) < tiny) d = tiny;
-        c = b + an / c;
-        if (std::abs(c) < tiny) c = tiny;
-        d = 1 / d;
-        h *= d * c;
-        if (std::abs(d * c - 1) < negligible * 10) break;
-    }
-    return h;
-}
 
 // The equation with the largest normalised residual, of those that a residual can accuse.
 std::optional<std::size_t> most_suspect(const SinglePoint& solution) {
@@ -61,24 +27,8 @@ std::optional<std::size_t> most_suspect(const SinglePoint& solution) {
 
 }  // namespace
 
-double upper_incomplete_gamma(double a, double x) {
-    if (x <= 0) return 1;
-    int sign = 1;  // positive for all a above 0; std::lgamma() would leave it in a variable that all threads share
-    const double factor = std::exp(a * std::log(x) - x - ::lgamma_r(a, &sign));
-    return x < a + 1 ? 1 - factor * gamma_series(a, x) : factor * gamma_fraction(a, x);
-}
-
 double chi_square_threshold(int degrees, double probability) {
-    const double a = degrees / 2.0;
-    double low = 0;
-    double high = degrees + 10;
-    while (upper_incomplete_gamma(a, high / 2) > probability && high < 1e6)
-        high *= 2;
-    for (int i = 0; i < 200 && high - low > 1e-12 * high; ++i) {
-        const double middle = (low + high) / 2;
-        (upper_incomplete_gamma(a, middle / 2) > probability ? low : high) = middle;
-    }
-    return (low + high) / 2;
+    return 2 * boost::math::gamma_q_inv(degrees / 2.0, probability);
 }
 
 IntegrityMonitor::IntegrityMonitor(const IntegrityParameters& parameters) : parameters_(parameters) {}

@@ -9,11 +9,7 @@
 
 namespace skyloop {
 
-/// Regularised upper incomplete gamma function Q(a, x): series below a + 1, continued fraction by Lentz's method above
-/// (Press et al., Numerical Recipes, section 6.2).
-double upper_incomplete_gamma(double a, double x);
-
-/// The value that a chi-square variable exceeds with the given probability, by bisection of Q(ν/2, x/2).
+/// The value that a chi-square variable exceeds with the given probability, x of Q(ν/2, x/2).
 /// @param degrees of freedom, from 1  @param probability above 0, below 1
 double chi_square_threshold(int degrees, double probability);
 

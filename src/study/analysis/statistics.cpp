@@ -3,40 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <numeric>
+#include <unsupported/Eigen/FFT>
 
 #include "base/geo/local_frame.hpp"
 
 namespace skyloop {
 namespace {
-
-using Spectrum = std::vector<std::complex<double>>;
-
-// In-place radix-2 Fourier transform; the size is a power of two.
-void transform(Spectrum& a) {
-    const std::size_t n = a.size();
-    for (std::size_t i = 1, j = 0; i < n; ++i) {
-        std::size_t bit = n >> 1;
-        for (; j & bit; bit >>= 1)
-            j ^= bit;
-        j ^= bit;
-        if (i < j) std::swap(a[i], a[j]);
-    }
-    for (std::size_t length = 2; length <= n; length <<= 1) {
-        const std::size_t half = length / 2;
-        Spectrum twiddle(half);
-        for (std::size_t k = 0; k < half; ++k)
-            twiddle[k] = std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(length));
-        for (std::size_t start = 0; start < n; start += length)
-            for (std::size_t k = 0; k < half; ++k) {
-                const std::complex<double> even = a[start + k];
-                const std::complex<double> odd = a[start + k + half] * twiddle[k];
-                a[start + k] = even + odd;
-                a[start + k + half] = even - odd;
-            }
-    }
-}
 
 Geodetic mean_position(const FixSeries& series) {
     // From the first fix on, so that the sum stays small and its rounding does.
@@ -114,18 +87,20 @@ PositionErrors position_errors(const FixSeries& series, const std::optional<Geod
 
 // By the Wiener–Khinchin theorem: the sums over all lags cost no more than two Fourier transforms.
 std::vector<double> lagged_products(std::span<const double> values, std::size_t max_lag) {
-    std::size_t size = 1;
+    std::size_t size = 4;  // the least that Eigen transforms of real numbers
     while (size < 2 * values.size())
         size <<= 1;
-    Spectrum a(size);
-    std::copy(values.begin(), values.end(), a.begin());
-    transform(a);
-    for (std::complex<double>& bin : a)
+    std::vector<double> padded(size);
+    std::copy(values.begin(), values.end(), padded.begin());
+    Eigen::FFT<double> transform;
+    std::vector<std::complex<double>> spectrum;
+    transform.fwd(spectrum, padded);
+    for (std::complex<double>& bin : spectrum)
         bin = std::norm(bin);
-    transform(a);
+    transform.inv(padded, spectrum);
     std::vector<double> sums(std::min(max_lag + 1, values.size()));
     for (std::size_t lag = 0; lag < sums.size(); ++lag)
-        sums[lag] = a[lag].real() / static_cast<double>(size);
+        sums[lag] = padded[lag];
     return sums;
 }
 
