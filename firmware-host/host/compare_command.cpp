@@ -6,7 +6,9 @@
 #include <system_error>
 
 #include "commands.hpp"
+#include "data_folders.hpp"
 #include "messages.hpp"
+#include "run/emulator/assembly.hpp"
 #include "run_options.hpp"
 #include "study/analysis/comparison.hpp"
 #include "study/plot/scatter_plot.hpp"
@@ -41,8 +43,8 @@ std::string fixes_at(const std::string& path) {
     return std::filesystem::is_directory(path, absent) ? (std::filesystem::path(path) / "fixes.csv").string() : path;
 }
 
-Result<FixSeries> read_view(const FileView& view) {
-    auto series = read_fix_series(view.path);
+Result<FixSeries> read_view(const FileView& view, const Geoid* geoid) {
+    auto series = read_fix_series(view.path, geoid);
     if (!series) return series;
     if (view.interval > 0 && series->interval)
         series->warnings.push_back(
@@ -78,11 +80,15 @@ int compare_files(const CompareOptions& options) {
         if (!place) return messages.error(place.error());
         wanted.reference = *place;
     }
+    std::vector<std::string> unused;
+    const auto geoid = find_geoid(data_folders(), unused);
     const auto a = read_view(
-        {fixes_at(options.a), {options.skip_a, options.every_a, options.count_a}, options.interval_a, own_mean});
+        {fixes_at(options.a), {options.skip_a, options.every_a, options.count_a}, options.interval_a, own_mean},
+        geoid.get());
     if (!a) return messages.error(a.error());
     const auto b = read_view(
-        {fixes_at(options.b), {options.skip_b, options.every_b, options.count_b}, options.interval_b, own_mean});
+        {fixes_at(options.b), {options.skip_b, options.every_b, options.count_b}, options.interval_b, own_mean},
+        geoid.get());
     if (!b) return messages.error(b.error());
     for (const FixSeries* series : {&*a, &*b})
         for (const std::string& warning : series->warnings)

@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "messages.hpp"
-#include "receiver/logs/log_events.hpp"
+#include "receiver/observed/log_events.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run_options.hpp"
 #include "whole_file.hpp"
@@ -25,7 +25,7 @@ struct ScenarioFromOptions {
     Verbosity verbosity;
 };
 
-void print_summary(const ReceiverLog& log, const LogEvents& events, const LogScenario& made) {
+void print_summary(const ObservedLog& log, const LogEvents& events, const LogScenario& made) {
     static constexpr std::string_view names[] = {"outages",    "silences",        "changes of the type of fix",
                                                  "C/N0 drops", "weak satellites", "lost satellites"};
     const auto utc = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 3); };
@@ -68,7 +68,7 @@ int make_scenario(const ScenarioFromOptions& options) {
     std::vector<std::string> warnings;
     const auto geoid = find_geoid(data_folders(), warnings);
     const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(text->data()), text->size());
-    const auto log = read_receiver_log(bytes, options.log, {geoid.get(), options.receiver});
+    const auto log = read_observed(bytes, options.log, {geoid.get(), options.receiver});
     if (!log) return messages.error(log.error());
     EventLimits limits;
     limits.drop_db = options.drop_db;

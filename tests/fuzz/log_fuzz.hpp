@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdint>
 
-#include "receiver/logs/log_events.hpp"
+#include "receiver/observed/log_events.hpp"
 #include "require.hpp"
 
 namespace skyloop {
 
 inline void read_any_log(ByteSpan bytes) {
-    const auto log = read_receiver_log(bytes, "fuzz.log", {});
+    const auto log = read_observed(bytes, "fuzz.log", {});
     if (!log) {
         require(log.error().message.starts_with("fuzz.log: "));
         require(log.error().message.find('\n') == std::string::npos);

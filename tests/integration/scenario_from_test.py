@@ -104,7 +104,7 @@ class ScenarioFromTest(unittest.TestCase):
             self.assertEqual(skyloop("scenario-from", log, "--out", self.folder / "made").returncode, 0)
 
     def test_what_is_no_log_is_refused_in_one_line(self):
-        cases = {"empty": (b"", "is empty"), "text": (b"hello\n", "expected a UBX, NMEA, ULog or DataFlash log"),
+        cases = {"empty": (b"", "is empty"), "text": (b"hello\n", "expected a UBX, NMEA, SBF, ULog or DataFlash log"),
                  "ulog": (b"ULog\x01\x12\x35", "header of 7 bytes"),
                  "zeros": (bytes(1 << 20), "0 UBX messages and 0 NMEA sentences")}
         for name, (content, expected) in cases.items():

@@ -48,7 +48,7 @@ constexpr TrackFormat formats[] = {
     {{".ulg", "", ""}, is_ulog_track, read_ulog_track},
     {{".bin", "", ""}, is_dataflash_track, read_dataflash_track},
     {{".tlog", "", ""}, is_tlog, read_tlog},
-    {{".ubx", "", ""}, is_ubx_track, read_ubx_track},
+    {{".ubx", ".sbf"}, is_message_track, read_observed_track},
     {{".plan"}, is_qgc_plan, read_qgc_plan},
     {{".waypoints"}, is_wpl, read_wpl},
     {{".gpx"}, [](const TrackFile& file) { return is_xml_of(file, "gpx", ".gpx"); }, read_gpx},
@@ -56,26 +56,40 @@ constexpr TrackFormat formats[] = {
     {{}, is_other_xml, refuse_xml},
     {{".kmz"}, is_kmz, read_kmz},
     {{".igc"}, is_igc, read_igc},
-    {{".pos"}, is_table_dialect, read_table_dialect},
-    {{".nmea", ".log"}, is_nmea_track, read_nmea_track},
+    {{".pos"}, is_solution_track, read_observed_track},
+    {{}, is_table_dialect, read_table_dialect},
+    {{".nmea", ".log"}, is_sentence_track, read_observed_track},
     {{"", "", ""}, is_named_flight_log, refuse_flight_log},
     {{"", "", ""}, is_other_file, refuse_other_file},
     {{".csv", ".txt", ""}, [](const TrackFile&) { return true; }, read_csv},
 };
 
-}  // namespace
+const TrackFormat& format_of(const TrackFile& file) {
+    return *std::find_if(std::begin(formats), std::end(formats) - 1,
+                         [&](const TrackFormat& candidate) { return candidate.fits(file); });
+}
 
-Result<Track> read_track(ByteSpan bytes, const std::string& name, const TrackReading& reading) {
+TrackFile track_file(ByteSpan bytes, const std::string& name, const TrackReading& reading) {
     constexpr std::array<std::uint8_t, 3> byte_order_mark{0xEF, 0xBB, 0xBF};
     if (bytes.size() >= byte_order_mark.size() &&
         std::equal(byte_order_mark.begin(), byte_order_mark.end(), bytes.begin()))
         bytes = bytes.subspan(byte_order_mark.size());
-    const TrackFile file{bytes, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name, reading};
-    const auto format = std::find_if(std::begin(formats), std::end(formats),
-                                     [&](const TrackFormat& candidate) { return candidate.fits(file); });
-    Result<Track> track = format == std::end(formats) ? read_csv(file) : format->read(file);
+    return {bytes, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name, reading};
+}
+
+}  // namespace
+
+Result<Track> read_track(ByteSpan bytes, const std::string& name, const TrackReading& reading) {
+    const TrackFile file = track_file(bytes, name, reading);
+    Result<Track> track = format_of(file).read(file);
     if (track) find_useless_times(*track);
     return track;
+}
+
+bool is_track(ByteSpan bytes, const std::string& name) {
+    const TrackReading reading;
+    const auto read = format_of(track_file(bytes, name, reading)).read;
+    return read != read_csv && read != refuse_other_file && read != refuse_flight_log;
 }
 
 std::vector<std::string_view> track_endings() {

@@ -25,6 +25,9 @@ struct TrackReading {
 /// Fails with `input` and one line that begins with the name: what was found and what was expected.
 Result<Track> read_track(ByteSpan bytes, const std::string& name, const TrackReading& reading);
 
+/// Whether the content is a format of tracks, other than a table with the names of its columns.
+bool is_track(ByteSpan bytes, const std::string& name);
+
 /// Endings of names that are tracks, each with its dot: ".csv", ".gpx", … For messages and options.
 std::vector<std::string_view> track_endings();
 

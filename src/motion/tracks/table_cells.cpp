@@ -110,13 +110,12 @@ std::optional<Nanoseconds> week_since_1980(double week, double tow_s) {
 bool is_table_dialect(const TrackFile& file) {
     constexpr std::size_t looked_at = 65536;
     const std::string_view head = file.text.substr(0, looked_at);
-    return is_rtklib_track(head) || is_named_dialect(head) || is_shaped_dialect(file);
+    return is_named_dialect(head) || is_shaped_dialect(file);
 }
 
 Result<Track> read_table_dialect(const TrackFile& file) {
     constexpr std::size_t looked_at = 65536;
     const std::string_view head = file.text.substr(0, looked_at);
-    if (is_rtklib_track(head)) return read_rtklib_track(file);
     if (is_named_dialect(head)) return read_named_dialect(file);
     return read_shaped_dialect(file);
 }

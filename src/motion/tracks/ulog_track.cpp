@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "detail/ulog_local.hpp"
-#include "receiver/logs/ulog.hpp"
+#include "receiver/observed/ulog.hpp"
 
 namespace skyloop {
 namespace {

@@ -3,21 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "base/core/middle.hpp"
 #include "base/core/text_file.hpp"
 #include "detail/fix_table.hpp"
-#include "detail/nmea_log.hpp"
-#include "detail/rtklib_solution.hpp"
 #include "detail/satellites_table.hpp"
-#include "detail/ubx_log.hpp"
+#include "motion/tracks/read_track.hpp"
+#include "receiver/observed/observed_log.hpp"
+#include "receiver/protocol/nmea_satellites.hpp"
 
 namespace skyloop {
 namespace {
 
 constexpr std::string_view known_formats =
-    "fixes.csv, a table of lat,lon,height, an NMEA log with GGA or GNS sentences, a UBX log or an RTKLIB solution "
-    "(.pos)";
+    "fixes.csv, a table of lat,lon,height, a receiver's log (NMEA with GGA or GNS, UBX, SBF, ULog, DataFlash), an "
+    "RTKLIB solution (.pos) or a track such as GPX";
 
 // The median of the times between neighbours, so that a pause in the log does not matter.
 std::optional<Seconds> sampling_interval(const std::vector<FixSample>& samples) {
@@ -73,41 +74,93 @@ FixSeries without_samples(const FixSeries& series) {
     return {series.name, {}, series.dated, series.interval, series.warnings};
 }
 
-// Of a log that holds both: UBX, which tells more, unless a few polled messages stand in a log of NMEA. It is told.
-FixSeries richer(FixSeries ubx, FixSeries nmea) {
-    constexpr std::size_t many_more = 2;
-    const bool of_nmea = nmea.fixes() > many_more * ubx.fixes();
-    FixSeries& taken = of_nmea ? nmea : ubx;
-    const std::size_t others = (of_nmea ? ubx : nmea).fixes();
-    if (others > (of_nmea ? 0 : taken.fixes()))
-        taken.warnings.push_back(fmt::format("{}: the {} fixes of {} are taken; {} tell {}", taken.name, taken.fixes(),
-                                             of_nmea ? "NMEA" : "UBX", of_nmea ? "UBX messages" : "NMEA sentences",
-                                             others));
-    return std::move(taken);
+// The signal of each system that tells its C/N0: the open one on L1 where the log has it, else the first by number, as
+// BeiDou's B1C of receivers without B1I. Others differ from it in power by design.
+class FirstSignals {
+public:
+    explicit FirstSignals(const ObservedLog& log) {
+        for (const ObservedEpoch& epoch : log.epochs)
+            for (const ObservedSignal& signal : epoch.signals)
+                if (signal.number != 0) add(signal);
+    }
+    [[nodiscard]] bool holds(const ObservedSignal& signal) const {
+        return signal.number == 0 || numbers_.at(signal.id.constellation) == signal.number;
+    }
+
+private:
+    void add(const ObservedSignal& signal) {
+        const int on_l1 = nmea_system(signal.id.constellation, NmeaVersion::v4_11).l1_signal_id;
+        int& first = numbers_.try_emplace(signal.id.constellation, signal.number).first->second;
+        if (first != on_l1) first = signal.number == on_l1 ? on_l1 : std::min(first, signal.number);
+    }
+
+    std::map<Constellation, int> numbers_;
+};
+
+FixSeries series_of(ObservedLog log) {
+    const FirstSignals first(log);
+    FixSeries series{log.name, {}, log.dated, std::nullopt, {}};
+    for (const ObservedEpoch& epoch : log.epochs) {
+        FixSample& sample = series.samples.emplace_back();
+        if (epoch.timed) sample.time = epoch.time;
+        sample.has_fix = epoch.place.has_value();
+        if (epoch.place) sample.position = *epoch.place;
+        sample.satellites_used = epoch.satellites_used;
+        for (const ObservedSignal& signal : epoch.signals)
+            if (signal.elevation_deg && first.holds(signal))
+                sample.signals.push_back({Angle::degrees(*signal.elevation_deg), DbHz(signal.cn0_dbhz)});
+    }
+    for (const std::string& note : log.notes)
+        series.warnings.push_back(fmt::format("{}: {}", log.name, note));
+    return series;
 }
 
-Result<FixSeries> parse_by_content(std::string_view text, const std::string& name) {
-    if (blank(text)) return fail(ErrorCode::input, fmt::format("{}: is empty; expected {}", name, known_formats));
-    if (!rinex_label(text).empty()) return fail(rinex_refusal(text, name));
-    std::size_t ubx_messages = 0;
-    if (has_ubx_sync(text)) {
-        UbxLog log = parse_ubx_log(text, name);
-        if (!log.series.samples.empty())
-            return has_nmea_sentence(text) ? richer(std::move(log.series), parse_nmea_log(text, name))
-                                           : std::move(log.series);
-        ubx_messages = log.messages;
+FixSeries series_of(const Track& track) {
+    FixSeries series{track.name, {}, track.origin.has_value(), std::nullopt, {}};
+    for (const TrackRow& row : track.points) {
+        FixSample& sample = series.samples.emplace_back();
+        if (!track.route) sample.time = track.origin.value_or(GpsTime{}) + row.time;
+        sample.has_fix = true;
+        sample.position = to_geodetic(row.position);
     }
-    if (has_nmea_sentence(text)) return parse_nmea_log(text, name);
-    if (ubx_messages > 0 || text.starts_with("\xB5\x62"))
-        return fail(ErrorCode::input,
-                    fmt::format("{}: is a UBX log (bytes B5 62) without a position in its {} whole messages; expected "
-                                "NAV-PVT, NAV-SOL or NAV-POSLLH",
-                                name, ubx_messages));
-    if (is_rtklib_solution(text)) return parse_rtklib_solution(text, name);
+    for (const std::string& note : track.notes)
+        series.warnings.push_back(fmt::format("{}: {}", track.name, note));
+    return series;
+}
+
+// Something that a receiver may have sent, whole or not.
+bool hints_at_receiver(std::string_view text) {
+    if (text.find("\xB5\x62") != std::string_view::npos) return true;
+    for (std::size_t at = text.find('$'); at != std::string_view::npos; at = text.find('$', at + 1))
+        for (const std::string_view kind : {"GGA,", "GNS,", "RMC,", "GSV,", "GSA,"})
+            if (text.substr(std::min(at + 3, text.size())).starts_with(kind)) return true;
+    return false;
+}
+
+Result<FixSeries> series_of_table(std::string_view text, const std::string& name) {
     if (const auto at = first_binary_byte(text))
         return fail(ErrorCode::input, fmt::format("{}: is not text: byte {:#04x} at offset {}; expected {}", name,
                                                   static_cast<unsigned char>(text[*at]), *at, known_formats));
     return parse_fix_table(text, name);
+}
+
+Result<FixSeries> parse_by_content(std::string_view text, const std::string& name, const Geoid* geoid) {
+    if (blank(text)) return fail(ErrorCode::input, fmt::format("{}: is empty; expected {}", name, known_formats));
+    if (!rinex_label(text).empty()) return fail(rinex_refusal(text, name));
+    const ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    const auto observed = [&]() -> Result<FixSeries> {
+        auto log = read_observed(bytes, name, {geoid, 0, ObservedUse::fixes});
+        if (!log) return fail(log.error());
+        return series_of(std::move(*log));
+    };
+    if (is_observed(bytes)) return observed();
+    Result<FixSeries> table = series_of_table(text, name);
+    if (table) return table;
+    if (hints_at_receiver(text)) return observed();
+    if (!is_track(bytes, name)) return table;
+    const auto track = read_track(bytes, name, {geoid, std::nullopt});
+    if (!track) return fail(track.error());
+    return series_of(*track);
 }
 
 }  // namespace
@@ -125,8 +178,8 @@ SignalStrengthByElevation FixSeries::signal_strength() const {
     return strengths;
 }
 
-Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name) {
-    Result<FixSeries> series = parse_by_content(text, name);
+Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name, const Geoid* geoid) {
+    Result<FixSeries> series = parse_by_content(text, name, geoid);
     if (!series) return series;
     if (series->fixes() == 0) {
         std::string message =
@@ -139,10 +192,10 @@ Result<FixSeries> parse_fix_series(std::string_view text, const std::string& nam
     return series;
 }
 
-Result<FixSeries> read_fix_series(const std::filesystem::path& path) {
+Result<FixSeries> read_fix_series(const std::filesystem::path& path, const Geoid* geoid) {
     const Result<std::string> text = read_text_file(path);
     if (!text) return fail(text.error());
-    Result<FixSeries> series = parse_fix_series(*text, path.string());
+    Result<FixSeries> series = parse_fix_series(*text, path.string(), geoid);
     if (series) add_satellites_beside(path, *series);
     return series;
 }

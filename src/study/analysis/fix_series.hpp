@@ -11,6 +11,7 @@
 #include "base/core/result.hpp"
 #include "base/core/units.hpp"
 #include "base/geo/geodetic.hpp"
+#include "base/geo/geoid.hpp"
 #include "base/time/gps_time.hpp"
 #include "study/analysis/signal_strength.hpp"
 
@@ -41,19 +42,19 @@ struct FixSeries {
 };
 
 /// Reads a fix file, gzip-compressed or not. The format is known by its content:
+///  - receivers' output as read_observed() reads it; a sample from each epoch with a solution, or that says that it has
+///    none. A fix is what has a place with a height, and is neither the time alone nor without a fix;
 ///  - a table with a header line that names latitude, longitude and height: fixes.csv (INTERFACE.md, section 3) or any
 ///    other CSV with the usual names; columns in any order, others are ignored;
 ///  - a table of numbers without a header: latitude, longitude (degrees), height above the ellipsoid (metres);
-///  - a log with NMEA 0183 sentences: GGA or GNS for positions, RMC for the date, GSV for signal strengths;
-///  - a log with u-blox UBX messages: NAV-PVT, NAV-SOL or NAV-POSLLH for positions, NAV-SAT or NAV-SVINFO for signal
-///    strengths; other bytes between them are passed over;
-///  - a solution of RTKLIB (.pos), geodetic or Earth-centred.
+///  - a track as read_track() reads it.
 /// Beside a file called fixes.csv the signal strengths are read from satellites.csv, where that is (INTERFACE.md,
 /// section 3). Fails with one sentence that names file and line. RINEX files are refused by name: they hold no fixes.
-Result<FixSeries> read_fix_series(const std::filesystem::path& path);
+/// @param geoid for heights above sea level where the file does not tell the undulation
+Result<FixSeries> read_fix_series(const std::filesystem::path& path, const Geoid* geoid = nullptr);
 
 /// The same from text already read; `name` stands for the file in messages.
-Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name);
+Result<FixSeries> parse_fix_series(std::string_view text, const std::string& name, const Geoid* geoid = nullptr);
 
 /// The series as a receiver would have written it, without the truth: errors are then about a point or its own mean.
 FixSeries without_truth(FixSeries series);

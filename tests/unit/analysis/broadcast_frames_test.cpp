@@ -10,7 +10,9 @@
 #include "../../support/oracle_table.hpp"
 #include "base/core/bit_field.hpp"
 #include "base/core/text_file.hpp"
-#include "study/analysis/detail/ubx_frames.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
+#include "receiver/protocol/ubx_satellites.hpp"
 #include "world/gnss/broadcast_d1.hpp"
 #include "world/gnss/broadcast_glonass.hpp"
 #include "world/gnss/broadcast_inav.hpp"
@@ -31,13 +33,12 @@ std::vector<RealFrame> real_frames(const std::filesystem::path& path) {
     EXPECT_TRUE(log.has_value()) << path;
     std::vector<RealFrame> result;
     if (!log) return result;
-    UbxFrames frames(*log);
-    while (const auto frame = frames.next()) {
-        if (frame->message_class != 0x02 || frame->id != 0x13 || frame->payload.size() < 8) continue;
-        RealFrame real{frame->u1(0), frame->u1(1), frame->u1(2), {}};
-        for (std::size_t i = 8; i + 4 <= frame->payload.size(); i += 4)
-            real.words.push_back(frame->u4(i));
-        result.push_back(std::move(real));
+    StreamSplitter splitter;
+    for (const StreamPiece& piece : splitter.feed(to_bytes(*log))) {
+        const auto frame = piece.kind == StreamKind::ubx ? parse_frame(piece.bytes) : std::nullopt;
+        const auto page =
+            frame && frame->id == RxmSfrbx::message_id ? decode_payload<RxmSfrbx>(frame->payload) : std::nullopt;
+        if (page) result.push_back({page->gnss_id, page->sv_id, page->sig_id, page->words});
     }
     return result;
 }

@@ -273,7 +273,7 @@ TEST(FixSeries, gga_without_a_date_still_gives_the_interval) {
     EXPECT_FALSE(series->dated);
     EXPECT_EQ(series->interval, Seconds(0.5));
     ASSERT_EQ(series->warnings.size(), 1u);
-    EXPECT_THAT(series->warnings[0], AllOf(HasSubstr("3 fixes without geoid separation"), HasSubstr("log.nmea")));
+    EXPECT_THAT(series->warnings[0], AllOf(HasSubstr("3 fixes without a geoid separation"), HasSubstr("log.nmea")));
 }
 
 // GGA comes before RMC, whose date is that of the second 60, and so does its midnight.
@@ -306,7 +306,7 @@ TEST(FixSeries, nmea_of_several_talkers_is_one_sample_an_epoch) {
     EXPECT_EQ(series->fixes(), 3u);
     EXPECT_NEAR(series->samples[1].position.latitude.deg(), 46.4776667, 1e-6);
     EXPECT_EQ(series->samples[1].satellites_used, 11);
-    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("3 fixes without geoid separation")));
+    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("3 fixes without a geoid separation")));
 }
 
 // A fix is made with any of the systems; where GGA tells the same epoch, the sentence with more satellites is taken.
@@ -325,7 +325,7 @@ TEST(FixSeries, nmea_gns_is_read_as_gga_is) {
     EXPECT_EQ(series->samples[2].satellites_used, 20);
     EXPECT_EQ(series->interval, Seconds(1));
     EXPECT_THAT(message_of(nmea("GNGNS,120000.00,4628.650,X,03043.956,E,AA,13,0.9,50.5,30.5,,")),
-                HasSubstr("1 GGA, GNS or RMC sentences with a right checksum that make no sense"));
+                HasSubstr("1 sentences with a right checksum that make no sense"));
 }
 
 TEST(FixSeries, nmea_tells_satellites_used_and_signal_strengths) {
@@ -363,14 +363,14 @@ TEST(FixSeries, nmea_signal_strengths_are_of_one_signal_of_each_system) {
                                nmea("GLGSV,1,1,01,65,42,090,23,3") + nmea("GBGSV,1,1,01,21,42,090,24,B");
     const std::string first =
         nmea("GAGSV,1,1,01,05,42,090,45,7") + nmea("GLGSV,1,1,01,65,42,090,45,1") + nmea("GBGSV,1,1,01,21,42,090,45,1");
-    EXPECT_EQ(of(others + l1 + first).n(), 10u);
+    EXPECT_EQ(of(others + l1 + first).n(), 5u);  // each once, however often an epoch lists it
     EXPECT_NEAR(of(others + l1 + first).mean(), 45, 1e-9);
     // BeiDou without B1I, and lists that tell no signal.
     const std::string b1c = nmea("GBGSV,1,1,01,21,42,090,41,3") + nmea("GBGSV,1,1,01,21,42,090,47,5");
-    EXPECT_EQ(of(b1c).n(), 2u);
+    EXPECT_EQ(of(b1c).n(), 1u);
     EXPECT_NEAR(of(b1c).mean(), 41, 1e-9);
     const std::string untold = nmea("GPGSV,1,1,01,03,42,090,40") + nmea("GPGSV,1,1,01,04,42,090,42,0");
-    EXPECT_EQ(of(l1 + untold).n(), 8u);
+    EXPECT_EQ(of(l1 + untold).n(), 4u);
     EXPECT_NEAR(of(l1 + untold).mean(), 43, 1e-9);
 }
 
@@ -421,7 +421,8 @@ TEST(FixSeries, damaged_sentences_are_skipped_and_counted) {
     ASSERT_EQ(series->warnings.size(), 2u);
     EXPECT_THAT(series->warnings[0], HasSubstr("1 GGA, GNS or RMC sentences with a wrong checksum"));
     EXPECT_THAT(series->warnings[1], HasSubstr("1 GGA, GNS or RMC sentences without a checksum"));
-    EXPECT_THAT(message_of(bad), AllOf(HasSubstr("no fix in 0 rows"), HasSubstr("wrong checksum")));
+    EXPECT_THAT(message_of(bad), AllOf(HasSubstr("none of them with a solution"),
+                                       HasSubstr("1 GGA, GNS or RMC sentences with a wrong checksum")));
 }
 
 TEST(FixSeries, a_sentence_with_stray_bytes_is_skipped_and_counted) {
@@ -461,10 +462,9 @@ TEST(FixSeries, a_strange_sentence_costs_no_other_fix) {
     ASSERT_TRUE(series) << series.error().message;
     EXPECT_EQ(series->samples.size(), 3u);
     EXPECT_EQ(series->fixes(), 2u);
-    EXPECT_THAT(series->warnings,
-                ElementsAre(AllOf(HasSubstr("1 GGA, GNS or RMC sentences with a right checksum that make no sense"),
-                                  HasSubstr("line 3"), HasSubstr("'2208-1'")),
-                            HasSubstr("1 positions without an altitude are not counted as fixes")));
+    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("1 positions without an altitude are not counted as fixes"),
+                                              AllOf(HasSubstr("1 sentences with a right checksum that make no sense"),
+                                                    HasSubstr("line 3"), HasSubstr("'2208-1'"))));
 }
 
 TEST(FixSeries, truncation_anywhere_never_crashes) {

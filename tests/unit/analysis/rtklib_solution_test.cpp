@@ -76,13 +76,14 @@ TEST(RtklibSolution, errors_name_file_line_and_what_was_found) {
     EXPECT_THAT(solution_error(header + "2023 147600.000 nan 1 2 5 3\n"),
                 AllOf(HasSubstr("a.pos:2:"), HasSubstr("latitude is 'nan'")));
     EXPECT_THAT(solution_error(header + "2023 147600.000 53 1\n"), HasSubstr("height is ''"));
-    EXPECT_THAT(solution_error(header + "2023 147600.000 91 1 2 5 3\n"), HasSubstr("latitude 91"));
+    EXPECT_THAT(solution_error(header + "2023 147600.000 91 1 2 5 3\n"),
+                HasSubstr("a.pos:2: latitude is 91; expected -90 to 90"));
     EXPECT_THAT(solution_error(header + "2023 700000.000 1 1 2 5 3\n"), HasSubstr("out of range"));
     EXPECT_EQ(solution_error(header + "11450 1.0 1 1 2 5 3\n"), "no error") << "a day of 2199";
     EXPECT_THAT(solution_error(header + "2018/13/15 17:00:00 1 1 2 5 3\n"), HasSubstr("'2018/13/15 17:00:00'"));
     EXPECT_THAT(solution_error(header + "2023 1.0 1 1 2 77 3\n"), HasSubstr("quality is 77"));
     EXPECT_THAT(solution_error("%  GPST  x-ecef(m) y-ecef(m) z-ecef(m) Q ns\n2023 1.0 1 1 2 5 3\n"),
-                HasSubstr("from the centre of the Earth"));
+                HasSubstr("from the Earth's centre"));
     EXPECT_THAT(solution_error("%  GPST  e-baseline(m) n-baseline(m) u-baseline(m) Q ns\n"), HasSubstr("baselines"));
 }
 

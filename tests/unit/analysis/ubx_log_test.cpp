@@ -90,7 +90,8 @@ TEST(UbxLog, only_flagged_positions_are_fixes) {
     for (const FixSample& sample : series->samples)
         fixes.push_back(sample.has_fix);
     EXPECT_THAT(fixes, ElementsAre(true, false, false, false, false, true));
-    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("1 epochs with a time-only fix")));
+    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("1 epochs with a time-only fix"),
+                                              HasSubstr("1 epochs have a fix and no sensible place")));
 }
 
 TEST(UbxLog, nav_sol_is_earth_centred_and_knows_the_week) {
@@ -151,6 +152,7 @@ TEST(UbxLog, the_end_of_a_week_does_not_turn_time_back) {
 TEST(UbxLog, satellites_come_from_nav_sat_else_nav_svinfo) {
     UbxMessage svinfo(0x30, 8 + 2 * 12);
     svinfo.put(0, 9000, 4).put(4, 2, 1);
+    svinfo.put(8 + 1, 5, 1).put(20 + 1, 6, 1);
     svinfo.put(8 + 2, 1, 1).put(8 + 4, 40, 1).put(8 + 5, 45, 1);
     svinfo.put(20 + 4, 0, 1).put(20 + 5, 45, 1);  // not tracked
     const auto old = parse_fix_series(posllh(9000, 1).bytes() + svinfo.bytes(), "log.ubx");
@@ -161,7 +163,9 @@ TEST(UbxLog, satellites_come_from_nav_sat_else_nav_svinfo) {
     UbxMessage sat(0x35, 8 + 3 * 12);
     sat.put(0, 9000, 4).put(4, 1, 1).put(5, 3, 1);
     for (std::size_t i = 0; i < 3; ++i)
-        sat.put(8 + 12 * i + 2, 30 + 10 * static_cast<std::int64_t>(i), 1).put(8 + 12 * i + 8, 8, 1);
+        sat.put(8 + 12 * i + 1, 5 + static_cast<std::int64_t>(i), 1)
+            .put(8 + 12 * i + 2, 30 + 10 * static_cast<std::int64_t>(i), 1)
+            .put(8 + 12 * i + 8, 8, 1);
     sat.put(8 + 3, 5, 1).put(20 + 3, -91, 1).put(32 + 3, 90, 1);  // an elevation that is not known
     const auto both = parse_fix_series(posllh(9000, 1).bytes() + svinfo.bytes() + sat.bytes(), "log.ubx");
     ASSERT_TRUE(both) << both.error().message;
@@ -188,9 +192,10 @@ TEST(UbxLog, damage_is_counted_and_the_next_message_found) {
     ASSERT_TRUE(series) << series.error().message;
     EXPECT_EQ(series->fixes(), 2u);
     EXPECT_EQ(series->samples.size(), 3u);
-    EXPECT_THAT(series->warnings,
-                ElementsAre(AllOf(HasSubstr("log.ubx"), HasSubstr("3 UBX messages with a wrong checksum")),
-                            HasSubstr("2 UBX navigation messages with a wrong length, time or position")));
+    EXPECT_THAT(series->warnings, ElementsAre(HasSubstr("log.ubx: 1 UBX messages of a wrong length or time of week"),
+                                              HasSubstr("3 UBX messages with a wrong checksum or a cut end"),
+                                              HasSubstr("1 GGA, GNS or RMC sentences with a wrong checksum"),
+                                              HasSubstr("1 epochs have a fix and no sensible place")));
 }
 
 TEST(UbxLog, truncation_anywhere_and_hostile_lengths_never_crash) {
@@ -244,12 +249,14 @@ TEST(UbxLog, a_few_polled_messages_do_not_hide_a_log_of_nmea) {
     const auto nmea = parse_fix_series(log, "log.ubx");
     ASSERT_TRUE(nmea) << nmea.error().message;
     EXPECT_EQ(nmea->fixes(), 5u);
-    EXPECT_THAT(nmea->warnings, ElementsAre("log.ubx: the 5 fixes of NMEA are taken; UBX messages tell 1"));
+    EXPECT_THAT(nmea->warnings,
+                ElementsAre("log.ubx: 5 epochs of NMEA and 1 of UBX have a place; those of NMEA are taken"));
     log += pvt(friday_noon_ms + 1000, 100).bytes() + pvt(friday_noon_ms + 2000, 100).bytes();
     const auto ubx = parse_fix_series(log, "log.ubx");
     ASSERT_TRUE(ubx) << ubx.error().message;
     EXPECT_EQ(ubx->fixes(), 3u);
-    EXPECT_THAT(ubx->warnings, ElementsAre("log.ubx: the 3 fixes of UBX are taken; NMEA sentences tell 5"));
+    EXPECT_THAT(ubx->warnings,
+                ElementsAre("log.ubx: 5 epochs of NMEA and 3 of UBX have a place; those of UBX are taken"));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(TableDialects, ReadSolutionsOfRtklib) {
                                 "%  GPST  x-ecef(m) y-ecef(m) z-ecef(m)\n"
                                 "2304 216018.000 4278990.1 635702.3 4672339.5" +
                                 tail);
-    EXPECT_EQ(ecef.points.at(0).position.vector().z(), 4672339.5);
+    EXPECT_NEAR(ecef.points.at(0).position.vector().z(), 4672339.5, 1e-6);
     const Track moving = track_of(head +
                                   "%  GPST  latitude(deg) longitude(deg)  height(m)\n2304 216018.000 47.5 8.25 500 1 8 "
                                   "0 0 0 0 0 0 0 0 1.5 2.5 -0.5 0 0 0 0 0 0\n");

@@ -28,13 +28,16 @@ TEST(UbxTrack, CountsFromItsFirstWeekWhereNoneIsTold) {
     EXPECT_THAT(track.notes, ElementsAre(HasSubstr("no week in it")));
 }
 
-TEST(UbxTrack, EpochsBeforeTheWeekIsToldAreLeftOut) {
-    const NavTimegps time{.i_tow = 2000, .week = 2304, .valid = 3};
-    const Track track = track_of(posllh(1000) + posllh(2000) + to_string(encode_frame(time)) + posllh(3000));
-    ASSERT_EQ(track.points.size(), 2u);
+TEST(UbxTrack, EpochsBeforeTheWeekIsToldAreDatedByIt) {
+    const NavTimegps time{.i_tow = 1000, .week = 2304, .valid = 3};
+    const Track track =
+        track_of(posllh(week_ms - 1000) + posllh(0) + posllh(1000) + to_string(encode_frame(time)) + posllh(2000));
+    ASSERT_EQ(track.points.size(), 4u);
     ASSERT_TRUE(track.origin.has_value());
-    EXPECT_EQ(*track.origin + track.points[0].time, to_gps_time(2304, 2.0));
-    EXPECT_THAT(track.notes, Contains(HasSubstr("1 epochs before the receiver knew the week")));
+    EXPECT_EQ(*track.origin + track.points[0].time, to_gps_time(2303, week_ms * 1e-3 - 1));
+    EXPECT_EQ(*track.origin + track.points[1].time, to_gps_time(2304, 0));
+    EXPECT_EQ(*track.origin + track.points[3].time, to_gps_time(2304, 2.0));
+    EXPECT_TRUE(track.notes.empty());
 }
 
 TEST(UbxTrack, SentencesWithADateAreTakenBeforeMessagesWithoutAWeek) {

@@ -8,7 +8,7 @@
 
 #include "flight_log.hpp"
 #include "local_maps.hpp"
-#include "receiver/logs/dataflash.hpp"
+#include "receiver/observed/dataflash.hpp"
 
 namespace skyloop {
 

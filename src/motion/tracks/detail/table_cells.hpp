@@ -65,8 +65,5 @@ Result<Track> read_gnss_logger(const TrackFile& file);
 // Tables without a header, told by the shape of their rows.
 bool is_shaped_dialect(const TrackFile& file);
 Result<Track> read_shaped_dialect(const TrackFile& file);
-// Solutions of RTKLIB.
-bool is_rtklib_track(std::string_view head);
-Result<Track> read_rtklib_track(const TrackFile& file);
 
 }  // namespace skyloop

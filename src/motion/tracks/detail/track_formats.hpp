@@ -22,8 +22,6 @@ bool is_wpl(const TrackFile& file);
 Result<Track> read_wpl(const TrackFile& file);
 bool is_igc(const TrackFile& file);
 Result<Track> read_igc(const TrackFile& file);
-bool is_nmea_track(const TrackFile& file);
-Result<Track> read_nmea_track(const TrackFile& file);
 bool is_table_dialect(const TrackFile& file);
 Result<Track> read_table_dialect(const TrackFile& file);
 bool is_ulog_track(const TrackFile& file);
@@ -32,8 +30,11 @@ bool is_dataflash_track(const TrackFile& file);
 Result<Track> read_dataflash_track(const TrackFile& file);
 bool is_tlog(const TrackFile& file);
 Result<Track> read_tlog(const TrackFile& file);
-bool is_ubx_track(const TrackFile& file);
-Result<Track> read_ubx_track(const TrackFile& file);
+// Receivers' messages, solutions of RTKLIB, and NMEA sentences.
+bool is_message_track(const TrackFile& file);
+bool is_solution_track(const TrackFile& file);
+bool is_sentence_track(const TrackFile& file);
+Result<Track> read_observed_track(const TrackFile& file);
 // A file that no format knows by its content and whose name says that it is one of these logs.
 bool is_named_flight_log(const TrackFile& file);
 Result<Track> refuse_flight_log(const TrackFile& file);

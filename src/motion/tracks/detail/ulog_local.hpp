@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "flight_log.hpp"
-#include "receiver/logs/ulog.hpp"
+#include "receiver/observed/ulog.hpp"
 
 namespace skyloop {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "base/time/utc_time.hpp"
-#include "receiver/logs/log_events.hpp"
+#include "receiver/observed/log_events.hpp"
 
 namespace skyloop {
 namespace {
@@ -56,12 +56,12 @@ std::string fault_text(const LogEvent& event) {
 }
 
 // The rows of the track. Places of epochs without signals are the receiver's guess: the path is bridged there.
-std::string track_text(const ReceiverLog& log, std::size_t& places) {
+std::string track_text(const ObservedLog& log, std::size_t& places) {
     const bool velocities = std::any_of(log.epochs.begin(), log.epochs.end(),
-                                        [](const LogEpoch& epoch) { return epoch.velocity.has_value(); });
+                                        [](const ObservedEpoch& epoch) { return epoch.velocity.has_value(); });
     std::string text = "gps_week,tow_s,lat_deg,lon_deg,h_ell_m";
     text += velocities ? ",vn_mps,ve_mps,vd_mps\n" : "\n";
-    for (const LogEpoch& epoch : log.epochs) {
+    for (const ObservedEpoch& epoch : log.epochs) {
         if (!epoch.place || epoch.is_lost()) continue;
         ++places;
         const WeekAndTow split = week_and_tow(epoch.time);
@@ -77,16 +77,16 @@ std::string track_text(const ReceiverLog& log, std::size_t& places) {
     return text;
 }
 
-std::string trajectory_text(const ReceiverLog& log, std::size_t places) {
+std::string trajectory_text(const ObservedLog& log, std::size_t places) {
     if (places > 1) return "[trajectory]\nkind = \"file\"\npath = \"track.csv\"\ntime = \"recorded\"\n";
     const auto at = std::find_if(log.epochs.begin(), log.epochs.end(),
-                                 [](const LogEpoch& epoch) { return epoch.place && !epoch.is_lost(); });
+                                 [](const ObservedEpoch& epoch) { return epoch.place && !epoch.is_lost(); });
     return fmt::format("# The log has one place.\n[trajectory]\nkind = \"fixed\"\nat = [{:.9f}, {:.9f}, {:.4f}]\n",
                        at->place->latitude.deg(), at->place->longitude.deg(),
                        at->place->height.above_ellipsoid.value());
 }
 
-std::string receiver_text(const ReceiverLog& log, Nanoseconds period) {
+std::string receiver_text(const ObservedLog& log, Nanoseconds period) {
     const double rate = std::clamp(1e9 / static_cast<double>(std::max<std::int64_t>(1, period.count())), 0.01, 100.0);
     std::string text = "[[receiver]]\n";
     if (log.board.empty())
@@ -98,7 +98,7 @@ std::string receiver_text(const ReceiverLog& log, Nanoseconds period) {
 
 }  // namespace
 
-Result<LogScenario> scenario_of_log(const ReceiverLog& log, const LogEvents& events) {
+Result<LogScenario> scenario_of_log(const ObservedLog& log, const LogEvents& events) {
     LogScenario made;
     made.track = track_text(log, made.places);
     if (made.places == 0)

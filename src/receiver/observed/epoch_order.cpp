@@ -6,25 +6,27 @@
 #include <map>
 #include <utility>
 
-#include "detail/log_parts.hpp"
+#include "detail/observed_parts.hpp"
 
 namespace skyloop {
 namespace {
 
-using LogEpochs = std::vector<LogEpoch>;
+using ObservedEpochs = std::vector<ObservedEpoch>;
 
 // More than a clock is ever set back by while it counts on: the recording began anew.
 constexpr Nanoseconds log_begins_anew = std::chrono::seconds(2);
 
-bool knows_its_place(const LogEpoch& epoch) { return epoch.type != FixType::none && epoch.type != FixType::time_only; }
+bool knows_its_place(const ObservedEpoch& epoch) {
+    return epoch.type != FixType::none && epoch.type != FixType::time_only;
+}
 
-bool earlier(const LogEpoch& a, const LogEpoch& b) { return a.time < b.time; }
+bool earlier(const ObservedEpoch& a, const ObservedEpoch& b) { return a.time < b.time; }
 
 // Leaves out single epochs that are ahead of the one after them, which itself follows the one before.
-std::size_t leave_out_ahead(LogEpochs& epochs) {
-    LogEpochs kept;
+std::size_t leave_out_ahead(ObservedEpochs& epochs) {
+    ObservedEpochs kept;
     std::size_t ahead = 0;
-    for (LogEpoch& epoch : epochs) {
+    for (ObservedEpoch& epoch : epochs) {
         const std::size_t count = kept.size();
         if (count >= 2 && epoch.time < kept[count - 1].time - log_begins_anew && epoch.time > kept[count - 2].time) {
             kept.pop_back();
@@ -37,9 +39,9 @@ std::size_t leave_out_ahead(LogEpochs& epochs) {
 }
 
 // Cuts where the time goes back by more than two seconds.
-std::vector<LogEpochs> recordings_of(LogEpochs epochs) {
-    std::vector<LogEpochs> parts;
-    for (LogEpoch& epoch : epochs) {
+std::vector<ObservedEpochs> recordings_of(ObservedEpochs epochs) {
+    std::vector<ObservedEpochs> parts;
+    for (ObservedEpoch& epoch : epochs) {
         if (parts.empty() || epoch.time < parts.back().back().time - log_begins_anew) parts.emplace_back();
         parts.back().push_back(std::move(epoch));
     }
@@ -47,9 +49,9 @@ std::vector<LogEpochs> recordings_of(LogEpochs epochs) {
 }
 
 // The epochs of a part, each later than the one before.
-std::size_t leave_out_repeated(LogEpochs& part) {
-    LogEpochs kept;
-    for (LogEpoch& epoch : part)
+std::size_t leave_out_repeated(ObservedEpochs& part) {
+    ObservedEpochs kept;
+    for (ObservedEpoch& epoch : part)
         if (kept.empty() || epoch.time > kept.back().time) kept.push_back(std::move(epoch));
     const std::size_t repeated = part.size() - kept.size();
     part = std::move(kept);
@@ -62,19 +64,19 @@ struct OrderCounts {
 
 // Recordings that have times of their own follow one another in time; of those that do not the longest stays. One epoch
 // in front of a recording that goes on earlier ran ahead.
-LogEpochs joined(LogEpochs epochs, OrderCounts& counts) {
-    std::vector<LogEpochs> parts = recordings_of(std::move(epochs));
+ObservedEpochs joined(ObservedEpochs epochs, OrderCounts& counts) {
+    std::vector<ObservedEpochs> parts = recordings_of(std::move(epochs));
     constexpr std::size_t fewest_behind = 3;
     if (parts.size() > 1 && parts[0].size() == 1 && parts[1].size() >= fewest_behind) {
         parts.erase(parts.begin());
         ++counts.ahead;
     }
-    for (LogEpochs& part : parts)
+    for (ObservedEpochs& part : parts)
         counts.repeated += leave_out_repeated(part);
     std::stable_sort(parts.begin(), parts.end(),
-                     [](const LogEpochs& a, const LogEpochs& b) { return a.size() > b.size(); });
-    std::map<GpsTime, LogEpochs> kept;  // by their begin; none reaches into the next
-    for (LogEpochs& part : parts) {
+                     [](const ObservedEpochs& a, const ObservedEpochs& b) { return a.size() > b.size(); });
+    std::map<GpsTime, ObservedEpochs> kept;  // by their begin; none reaches into the next
+    for (ObservedEpochs& part : parts) {
         const auto next = kept.upper_bound(part.front().time);
         const bool overlaps = (next != kept.begin() && std::prev(next)->second.back().time >= part.front().time) ||
                               (next != kept.end() && next->first <= part.back().time);
@@ -84,17 +86,17 @@ LogEpochs joined(LogEpochs epochs, OrderCounts& counts) {
             kept.emplace_hint(next, part.front().time, std::move(part));
     }
     counts.parts = kept.size();
-    LogEpochs whole;
+    ObservedEpochs whole;
     for (auto& [begin, part] : kept)
         whole.insert(whole.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
     return whole;
 }
 
 // Of the epochs without a place those that fit between the ones with a place that stand beside them in the log.
-LogEpochs fitting(const LogEpochs& epochs) {
+ObservedEpochs fitting(const ObservedEpochs& epochs) {
     const auto places_from = [&](auto from, auto to) { return std::find_if(from, to, knows_its_place); };
-    LogEpochs fit;
-    const LogEpoch* before = nullptr;
+    ObservedEpochs fit;
+    const ObservedEpoch* before = nullptr;
     auto after = places_from(epochs.begin(), epochs.end());
     for (auto epoch = epochs.begin(); epoch != epochs.end(); ++epoch) {
         if (epoch == after) {
@@ -112,17 +114,17 @@ LogEpochs fitting(const LogEpochs& epochs) {
 
 }  // namespace
 
-void put_epochs_in_order(ReceiverLog& log) {
+void put_epochs_in_order(ObservedLog& log) {
     OrderCounts counts;
-    LogEpochs& epochs = log.epochs;
+    ObservedEpochs& epochs = log.epochs;
     counts.ahead = leave_out_ahead(epochs);
-    LogEpochs placed;
+    ObservedEpochs placed;
     std::copy_if(epochs.begin(), epochs.end(), std::back_inserter(placed), knows_its_place);
     if (placed.empty()) {
         epochs = joined(std::move(epochs), counts);
     } else {
         const std::size_t without = epochs.size() - placed.size();
-        LogEpochs others = fitting(epochs);
+        ObservedEpochs others = fitting(epochs);
         counts.repeated += without - others.size();
         epochs = joined(std::move(placed), counts);
         epochs.insert(epochs.end(), std::make_move_iterator(others.begin()), std::make_move_iterator(others.end()));

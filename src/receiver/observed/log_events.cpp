@@ -1,4 +1,4 @@
-#include "receiver/logs/log_events.hpp"
+#include "receiver/observed/log_events.hpp"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ struct Strength {
 
 class EventFinder {
 public:
-    EventFinder(const ReceiverLog& log, const EventLimits& limits) : epochs_(log.epochs), limits_(limits) {}
+    EventFinder(const ObservedLog& log, const EventLimits& limits) : epochs_(log.epochs), limits_(limits) {}
     LogEvents find();
 
 private:
@@ -38,7 +38,7 @@ private:
     // A receiver that solves the time alone, at a place that it was told, has its signals.
     [[nodiscard]] bool lost(std::size_t i) const {
         return (epochs_[i].is_lost() && epochs_[i].type != FixType::time_only) ||
-               (epochs_[i].lists_satellites && epochs_[i].satellites.empty());
+               (epochs_[i].lists_satellites && epochs_[i].signals.empty());
     }
     [[nodiscard]] Nanoseconds at(std::size_t i) const { return epochs_[i].time - epochs_.front().time; }
     // Of the epochs before `end`: the next epoch begins, or would.
@@ -51,7 +51,7 @@ private:
     void runs(Wanted wanted, Same same, Body body) const;
     void add(LogEvent event) { found_.events.push_back(std::move(event)); }
 
-    const std::vector<LogEpoch>& epochs_;
+    const std::vector<ObservedEpoch>& epochs_;
     const EventLimits& limits_;
     LogEvents found_;
     std::map<SatelliteId, Strength> strengths_;
@@ -107,7 +107,7 @@ void EventFinder::add_loss(std::size_t begin, std::size_t end) {
     bool listed = true;
     for (std::size_t i = begin; i < end; ++i) {
         listed &= epochs_[i].lists_satellites;
-        if (!epochs_[i].lists_satellites || !epochs_[i].satellites.empty()) continue;
+        if (!epochs_[i].lists_satellites || !epochs_[i].signals.empty()) continue;
         first = std::min(first, i);
         last = i;
     }
@@ -147,7 +147,7 @@ void EventFinder::find_types() {
 
 void EventFinder::collect_strengths() {
     for (std::size_t i = 0; i < epochs_.size(); ++i)
-        for (const LoggedSatellite& satellite : epochs_[i].satellites) {
+        for (const ObservedSignal& satellite : epochs_[i].signals) {
             Strength& strength = strengths_[satellite.id];
             if (strength.cn0.empty()) {
                 strength.cn0.resize(epochs_.size());
@@ -162,7 +162,7 @@ void EventFinder::collect_strengths() {
     constexpr std::size_t fewest = 4;
     for (std::size_t i = 0; i < epochs_.size(); ++i) {
         std::vector<double> below;
-        for (const LoggedSatellite& satellite : epochs_[i].satellites) {
+        for (const ObservedSignal& satellite : epochs_[i].signals) {
             const Strength& strength = strengths_.at(satellite.id);
             if (strength.level[i] > 0) below.push_back(strength.level[i] - strength.cn0[i]);
         }
@@ -283,6 +283,6 @@ LogEvents EventFinder::find() {
 
 }  // namespace
 
-LogEvents find_events(const ReceiverLog& log, const EventLimits& limits) { return EventFinder(log, limits).find(); }
+LogEvents find_events(const ObservedLog& log, const EventLimits& limits) { return EventFinder(log, limits).find(); }
 
 }  // namespace skyloop

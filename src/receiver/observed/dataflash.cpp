@@ -1,9 +1,9 @@
-#include "receiver/logs/dataflash.hpp"
+#include "receiver/observed/dataflash.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "detail/log_parts.hpp"
+#include "detail/observed_parts.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,19 +5,19 @@
 #include <string_view>
 
 #include "base/time/utc_time.hpp"
-#include "detail/log_parts.hpp"
-#include "receiver/logs/dataflash.hpp"
+#include "detail/observed_parts.hpp"
+#include "receiver/observed/dataflash.hpp"
 
 namespace skyloop {
 namespace {
 
 class DataflashEpochs {
 public:
-    DataflashEpochs(const std::string& name, const LogReading& reading) : reading_(reading) {
+    DataflashEpochs(const std::string& name, const ObservedReading& reading) : reading_(reading) {
         log_.name = name;
         log_.format = "DataFlash";
     }
-    Result<ReceiverLog> read(ByteSpan bytes);
+    Result<ObservedLog> read(ByteSpan bytes);
 
 private:
     void take_gps(const DataflashRecord& record);
@@ -25,14 +25,14 @@ private:
     [[nodiscard]] bool asked(const DataflashRecord& record, std::string_view base) const;
     Result<void> add_undulations();
 
-    const LogReading& reading_;
-    ReceiverLog log_;
+    const ObservedReading& reading_;
+    ObservedLog log_;
     std::optional<double> undulation_;  // as the receiver last told it, m
     std::vector<bool> on_sea_level_;    // of each epoch: its height is not yet one above the ellipsoid
     std::size_t undated_ = 0, gps_records_ = 0;
 };
 
-Result<ReceiverLog> DataflashEpochs::read(ByteSpan bytes) {
+Result<ObservedLog> DataflashEpochs::read(ByteSpan bytes) {
     DataflashReader reader(bytes);
     while (const auto record = reader.next()) {
         if (asked(*record, "GPS"))
@@ -71,15 +71,15 @@ void DataflashEpochs::take_gps(const DataflashRecord& record) {
     }
     static constexpr std::array types{FixType::none,  FixType::none,      FixType::fix_2d,   FixType::fix_3d,
                                       FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
-    LogEpoch epoch;
+    ObservedEpoch epoch;
     epoch.time = to_gps_time(static_cast<std::int64_t>(week), ms / 1000);
-    const auto status = static_cast<std::size_t>(logged_number(record.value({"Status"})));
+    const auto status = static_cast<std::size_t>(observed_number(record.value({"Status"})));
     epoch.type = status < types.size() ? types[status] : FixType::none;
-    epoch.satellites_used = logged_number(record.value({"NSats"}));
+    epoch.satellites_used = observed_number(record.value({"NSats"}));
     const auto latitude = record.value({"Lat"}), longitude = record.value({"Lng"});
     const auto altitude = record.value({"Alt"});
     if (epoch.type != FixType::none && latitude && longitude && altitude) {
-        epoch.place = logged_place(*latitude, *longitude, *altitude);
+        epoch.place = observed_place(*latitude, *longitude, *altitude);
         const auto speed = record.value({"Spd"}), course = record.value({"GCrs"});
         const auto down = record.value({"VZ"});
         if (epoch.place && speed && course && down) {
@@ -124,7 +124,7 @@ Result<void> DataflashEpochs::add_undulations() {
 
 }  // namespace
 
-Result<ReceiverLog> read_dataflash(ByteSpan bytes, const std::string& name, const LogReading& reading) {
+Result<ObservedLog> read_dataflash(ByteSpan bytes, const std::string& name, const ObservedReading& reading) {
     return DataflashEpochs(name, reading).read(bytes);
 }
 

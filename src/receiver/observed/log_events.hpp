@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "receiver/logs/receiver_log.hpp"
+#include "receiver/observed/observed_log.hpp"
 
 namespace skyloop {
 
@@ -42,7 +42,7 @@ struct LogEvents {
 };
 
 /// Finds them. @param log one epoch or more
-LogEvents find_events(const ReceiverLog& log, const EventLimits& limits);
+LogEvents find_events(const ObservedLog& log, const EventLimits& limits);
 
 /// The files of a scenario that is like the log.
 struct LogScenario {
@@ -51,6 +51,6 @@ struct LogScenario {
     std::size_t places = 0;
 };
 /// Fails with `input` for a log without any place.
-Result<LogScenario> scenario_of_log(const ReceiverLog& log, const LogEvents& events);
+Result<LogScenario> scenario_of_log(const ObservedLog& log, const LogEvents& events);
 
 }  // namespace skyloop

@@ -1,4 +1,4 @@
-#include "receiver/logs/ulog.hpp"
+#include "receiver/observed/ulog.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <charconv>
 
-#include "detail/log_parts.hpp"
+#include "detail/observed_parts.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Logs of every kind, from bytes made here by the published layouts.
-#include "receiver/logs/receiver_log.hpp"
+#include "receiver/observed/observed_log.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "base/core/text_file.hpp"
 #include "base/time/utc_time.hpp"
-#include "receiver/logs/dataflash.hpp"
+#include "receiver/observed/dataflash.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
@@ -38,14 +38,14 @@ public:
     Bytes bytes;
 };
 
-ReceiverLog read_whole(const Bytes& bytes, std::size_t receiver = 0) {
-    auto log = read_receiver_log(bytes, "x.log", {nullptr, receiver});
+ObservedLog read_whole(const Bytes& bytes, std::size_t receiver = 0) {
+    auto log = read_observed(bytes, "x.log", {nullptr, receiver});
     EXPECT_TRUE(log.has_value()) << (log ? "" : log.error().message);
-    return log ? std::move(*log) : ReceiverLog{};
+    return log ? std::move(*log) : ObservedLog{};
 }
 
 std::string refusal_of(const Bytes& bytes, std::size_t receiver = 0) {
-    const auto log = read_receiver_log(bytes, "x.log", {nullptr, receiver});
+    const auto log = read_observed(bytes, "x.log", {nullptr, receiver});
     EXPECT_FALSE(log.has_value());
     if (log) return {};
     EXPECT_EQ(log.error().message.find('\n'), std::string::npos);
@@ -80,7 +80,7 @@ TEST(UbxLog, ReadsSolutionsSatellitesAndVersion) {
     append(bytes, encode_frame(sat));
     append(bytes, encode_frame(pvt_at(1, 0, 0)));
     append(bytes, encode_frame(pvt_at(2, 3, 0x83)));
-    const ReceiverLog log = read_whole(bytes);
+    const ObservedLog log = read_whole(bytes);
     EXPECT_EQ(log.format, "UBX");
     EXPECT_EQ(log.board, "ublox-m10");
     ASSERT_EQ(log.epochs.size(), 3u);
@@ -89,9 +89,9 @@ TEST(UbxLog, ReadsSolutionsSatellitesAndVersion) {
     EXPECT_NEAR(log.epochs[0].place->latitude.deg(), 47, 1e-9);
     EXPECT_NEAR(log.epochs[0].place->height.above_ellipsoid.value(), 500, 1e-9);
     EXPECT_EQ(log.epochs[0].velocity->north, 1);
-    ASSERT_EQ(log.epochs[0].satellites.size(), 2u);
-    EXPECT_EQ(to_string(log.epochs[0].satellites[0].id), "G07");
-    EXPECT_EQ(to_string(log.epochs[0].satellites[1].id), "E05");
+    ASSERT_EQ(log.epochs[0].signals.size(), 2u);
+    EXPECT_EQ(to_string(log.epochs[0].signals[0].id), "G07");
+    EXPECT_EQ(to_string(log.epochs[0].signals[1].id), "E05");
     EXPECT_TRUE(log.epochs[1].is_lost());
     EXPECT_FALSE(log.epochs[1].place.has_value());
     EXPECT_EQ(log.epochs[2].type, FixType::rtk_fixed);
@@ -107,7 +107,7 @@ TEST(UbxLog, CountsDamageAndKeepsTheRest) {
     append(bytes, encode_frame(pvt_at(1, 3, 1)));  // back in time
     const Bytes cut = encode_frame(pvt_at(3, 3, 1));
     bytes.insert(bytes.end(), cut.begin(), cut.begin() + 40);
-    const ReceiverLog log = read_whole(bytes);
+    const ObservedLog log = read_whole(bytes);
     EXPECT_EQ(log.epochs.size(), 2u);
     EXPECT_THAT(log.notes, testing::Contains(HasSubstr("1 epochs that repeat a time or go back")));
     EXPECT_THAT(log.notes, testing::Contains(HasSubstr("wrong checksum")));
@@ -123,7 +123,7 @@ TEST(UbxLog, OldReceiversTellInSeveralMessages) {
     Bytes bytes = encode_frame(sol);
     append(bytes, encode_frame(llh));
     append(bytes, encode_frame(velocity));
-    const ReceiverLog log = read_whole(bytes);
+    const ObservedLog log = read_whole(bytes);
     ASSERT_EQ(log.epochs.size(), 1u);
     EXPECT_EQ(log.epochs[0].time, to_gps_time(1500, 1.0));
     EXPECT_NEAR(log.epochs[0].place->height.above_ellipsoid.value(), 123, 1e-6);
@@ -146,12 +146,12 @@ TEST(NmeaLog, DatesEpochsOverMidnight) {
     text += sentence_of("GNGGA,000000.00,4700.00000,N,00800.00000,E,4,08,1.0,450.0,M,50.0,M,,");
     text += sentence_of("GNRMC,000000.00,A,4700.00000,N,00800.00000,E,0.0,,060324,,,R");
     text += sentence_of("GNGGA,000001.00,,,,,0,00,99.9,,M,,M,,");
-    const ReceiverLog log = read_whole(to_bytes(text));
+    const ObservedLog log = read_whole(to_bytes(text));
     ASSERT_EQ(log.epochs.size(), 3u);
     EXPECT_EQ(log.format, "NMEA");
     EXPECT_EQ(log.epochs[1].time, to_gps_time(UtcTime{2024, 3, 6, 0, 0, 0, 0}, LeapSeconds::announced()));
     EXPECT_EQ(log.epochs[1].time - log.epochs[0].time, std::chrono::seconds(1));
-    EXPECT_EQ(log.epochs[0].satellites.size(), 1u);
+    EXPECT_EQ(log.epochs[0].signals.size(), 1u);
     EXPECT_NEAR(log.epochs[0].place->height.above_ellipsoid.value(), 500, 1e-9);
     EXPECT_EQ(log.epochs[1].type, FixType::rtk_fixed);
     EXPECT_TRUE(log.epochs[2].is_lost());
@@ -173,7 +173,7 @@ TEST(NmeaLog, ADayWithALeapSecondIsASecondLonger) {
     const auto place = [](const char* time) {
         return sentence_of("GNGGA," + std::string(time) + ",4700.0000,N,00800.0000,E,1,08,1.0,500.0,M,47.0,M,,");
     };
-    const ReceiverLog log =
+    const ObservedLog log =
         read_whole(to_bytes(sentence_of("GNRMC,235959.00,A,4700.0,N,00800.0,E,0,0,311216,,,A") + place("235959.00") +
                             place("235960.00") + place("000000.00") + place("000001.00")));
     ASSERT_EQ(log.epochs.size(), 4u);
@@ -186,7 +186,7 @@ TEST(NmeaLog, OneTimeThatRanAheadCostsItsEpochAlone) {
         std::string text;
         for (int i = 0; i < 20; ++i)
             text += epoch_after_noon(i == wrong ? 7200 : i, i);
-        const ReceiverLog log = read_whole(to_bytes(text));
+        const ObservedLog log = read_whole(to_bytes(text));
         ASSERT_EQ(log.epochs.size(), wrong == 19 ? 20u : 19u) << wrong;  // the last one may be right
         EXPECT_EQ(log.epochs.front().time, log_noon + std::chrono::seconds(wrong == 0 ? 1 : 0));
         if (wrong < 19) {
@@ -202,7 +202,7 @@ TEST(NmeaLog, EpochsWithoutAFixNeverOutdateThoseWithOne) {
     for (int i = 0; i < 5; ++i)
         text += epoch_after_noon(i, i);
     text += sentence_of("GPRMC,120005.00,V,,,,,,,050324,,,N") + epoch_after_noon(6, 6);
-    const ReceiverLog log = read_whole(to_bytes(text));
+    const ObservedLog log = read_whole(to_bytes(text));
     ASSERT_EQ(log.epochs.size(), 7u);
     EXPECT_EQ(log.epochs.front().time, log_noon);
     EXPECT_TRUE(log.epochs[5].is_lost());
@@ -215,14 +215,14 @@ TEST(NmeaLog, AFewPolledMessagesDoNotHideIt) {
         text += epoch_after_noon(i, i);
     Bytes bytes = to_bytes(text);
     append(bytes, encode_frame(pvt_at(5, 3, 1)));
-    const ReceiverLog nmea = read_whole(bytes);
+    const ObservedLog nmea = read_whole(bytes);
     EXPECT_EQ(nmea.format, "NMEA");
     EXPECT_EQ(nmea.epochs.size(), 5u);
     EXPECT_THAT(nmea.notes,
                 testing::ElementsAre("5 epochs of NMEA and 1 of UBX have a place; those of NMEA are taken"));
     append(bytes, encode_frame(pvt_at(6, 3, 1)));
     append(bytes, encode_frame(pvt_at(7, 3, 1)));
-    const ReceiverLog ubx = read_whole(bytes);
+    const ObservedLog ubx = read_whole(bytes);
     EXPECT_EQ(ubx.format, "UBX");
     EXPECT_THAT(ubx.notes, testing::ElementsAre("5 epochs of NMEA and 3 of UBX have a place; those of UBX are taken"));
 }
@@ -233,7 +233,7 @@ TEST(NmeaLog, PutsRecordingsOfOneFileInTheirOrder) {
         text += epoch_after_noon(3600 + i, i);
     for (int i = 0; i < 5; ++i)
         text += epoch_after_noon(i, 20 + i);
-    const ReceiverLog log = read_whole(to_bytes(text));
+    const ObservedLog log = read_whole(to_bytes(text));
     ASSERT_EQ(log.epochs.size(), 15u);
     EXPECT_EQ(log.epochs.front().time, log_noon);
     EXPECT_EQ(log.epochs.back().time, log_noon + std::chrono::seconds(3609));
@@ -281,7 +281,7 @@ ByteWriter ulog_of(unsigned records, std::uint8_t instance) {
 }
 
 TEST(Ulog, ReadsRecordsByName) {
-    const ReceiverLog log = read_whole(ulog_of(4, 1).bytes, 1);
+    const ObservedLog log = read_whole(ulog_of(4, 1).bytes, 1);
     EXPECT_EQ(log.format, "ULog");
     ASSERT_EQ(log.epochs.size(), 4u);  // the first by the autopilot's clock
     EXPECT_EQ(log.epochs[1].time - log_noon, std::chrono::milliseconds(200));
@@ -326,7 +326,7 @@ TEST(Ulog, CountsThatAreNoneAreNought) {
             record.put(value).put(value);
             ulog_message(log, 'D', record.bytes);
         }
-        const ReceiverLog read = read_whole(log.bytes);
+        const ObservedLog read = read_whole(log.bytes);
         ASSERT_EQ(read.epochs.size(), 3U);
         EXPECT_EQ(read.epochs[0].type, FixType::none);
         EXPECT_EQ(*read.epochs[0].satellites_used, 0);
@@ -368,7 +368,7 @@ ByteWriter dataflash_log(bool with_undulation) {
 }
 
 TEST(Dataflash, ReadsTheAskedReceiver) {
-    const ReceiverLog log = read_whole(dataflash_log(true).bytes);
+    const ObservedLog log = read_whole(dataflash_log(true).bytes);
     EXPECT_EQ(log.format, "DataFlash");
     ASSERT_EQ(log.epochs.size(), 5u);
     EXPECT_EQ(log.epochs[0].time, log_noon);
@@ -390,7 +390,7 @@ TEST(Dataflash, CountsThatAreNoneAreNought) {
             log.put(std::uint8_t{0}).put(std::uint32_t{216'018'000 + i * 200}).put(std::uint16_t{2304});
             log.put(value).put(value);
         }
-        const ReceiverLog read = read_whole(log.bytes);
+        const ObservedLog read = read_whole(log.bytes);
         ASSERT_EQ(read.epochs.size(), 3U);
         EXPECT_EQ(read.epochs[0].type, FixType::none);
         EXPECT_EQ(*read.epochs[0].satellites_used, 0);
@@ -427,7 +427,7 @@ TEST(Dataflash, RefusesWhatItCannotPlace) {
 
 TEST(ReceiverLogs, RefuseWhatIsNone) {
     EXPECT_THAT(refusal_of({}), HasSubstr("is empty"));
-    EXPECT_THAT(refusal_of(Bytes(100000, 0)), HasSubstr("expected a UBX, NMEA, ULog or DataFlash log"));
+    EXPECT_THAT(refusal_of(Bytes(100000, 0)), HasSubstr("expected a UBX, NMEA, SBF, ULog or DataFlash log"));
     EXPECT_THAT(refusal_of(to_bytes("hello\n")), HasSubstr("0 UBX messages and 0 NMEA sentences in 6 bytes"));
     EXPECT_THAT(refusal_of(encode_frame(pvt_at(0, 3, 1)), 1), HasSubstr("--gps 1 is not in it"));
 }
@@ -444,12 +444,12 @@ TEST_P(RealLogs, LoadWithTheCountsThatWereMeasured) {
     SKYLOOP_REQUIRE_SHARED(file, GetParam().path);
     const auto text = read_text_file(file);
     ASSERT_TRUE(text.has_value());
-    const ReceiverLog log = read_whole(to_bytes(*text));
+    const ObservedLog log = read_whole(to_bytes(*text));
     EXPECT_EQ(log.format, GetParam().format);
     EXPECT_GE(log.epochs.size(), GetParam().least_epochs);
     EXPECT_LE(log.epochs.size(), GetParam().most_epochs);
     std::size_t fixes = 0;
-    for (const LogEpoch& epoch : log.epochs)
+    for (const ObservedEpoch& epoch : log.epochs)
         if (!epoch.is_lost()) ++fixes;
     EXPECT_GE(fixes, GetParam().least_fixes);
     EXPECT_LE(fixes, GetParam().most_fixes);

@@ -1,5 +1,5 @@
 // What goes wrong in made-up logs is found, to the epoch, and told as faults.
-#include "receiver/logs/log_events.hpp"
+#include "receiver/observed/log_events.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,27 +14,27 @@ using std::chrono::seconds;
 using testing::HasSubstr;
 
 // A good log at `rate` Hz with eight satellites of 45 dB-Hz.
-ReceiverLog sound_log(int epochs, int rate = 1) {
-    ReceiverLog log;
+ObservedLog sound_log(int epochs, int rate = 1) {
+    ObservedLog log;
     log.name = "sound.ubx";
     log.format = "UBX";
     for (int i = 0; i < epochs; ++i) {
-        LogEpoch epoch;
+        ObservedEpoch epoch;
         epoch.time = to_gps_time(2304, 216018.0) + milliseconds(1000 / rate) * i;
         epoch.type = FixType::fix_3d;
         epoch.place = Geodetic::degrees(47, 8 + 1e-5 * i, 500);
         epoch.lists_satellites = true;
         for (int number = 1; number <= 8; ++number)
-            epoch.satellites.push_back({{Constellation::gps, number}, 45, 40});
+            epoch.signals.push_back({{Constellation::gps, number}, 45, 40});
         log.epochs.push_back(epoch);
     }
     return log;
 }
 
-void lose(LogEpoch& epoch) {
+void lose(ObservedEpoch& epoch) {
     epoch.type = FixType::none;
     epoch.place.reset();
-    epoch.satellites.clear();
+    epoch.signals.clear();
 }
 
 TEST(LogEvents, FindNothingInASoundLog) {
@@ -44,11 +44,11 @@ TEST(LogEvents, FindNothingInASoundLog) {
 }
 
 TEST(LogEvents, FindAnOutageByItsSatellites) {
-    ReceiverLog log = sound_log(100);
+    ObservedLog log = sound_log(100);
     for (std::size_t i = 30; i < 43; ++i)
         lose(log.epochs[i]);
     for (std::size_t i = 41; i < 43; ++i)  // tracked again, not yet used
-        log.epochs[i].satellites = log.epochs[0].satellites;
+        log.epochs[i].signals = log.epochs[0].signals;
     const LogEvents found = find_events(log, {});
     ASSERT_EQ(found.events.size(), 1u);
     EXPECT_EQ(found.events[0].kind, LogEventKind::signals_lost);
@@ -57,7 +57,7 @@ TEST(LogEvents, FindAnOutageByItsSatellites) {
 }
 
 TEST(LogEvents, TakeNoLossForTimeAlone) {
-    ReceiverLog log = sound_log(100);
+    ObservedLog log = sound_log(100);
     for (std::size_t i = 30; i < 40; ++i)
         log.epochs[i].type = FixType::time_only;
     for (std::size_t i = 95; i < 100; ++i)
@@ -70,9 +70,9 @@ TEST(LogEvents, TakeNoLossForTimeAlone) {
 }
 
 TEST(LogEvents, LeaveTimeToReacquireWhereNothingIsListed) {
-    ReceiverLog log = sound_log(100);
-    for (LogEpoch& epoch : log.epochs)
-        epoch.lists_satellites = false, epoch.satellites.clear();
+    ObservedLog log = sound_log(100);
+    for (ObservedEpoch& epoch : log.epochs)
+        epoch.lists_satellites = false, epoch.signals.clear();
     for (std::size_t i = 30; i < 43; ++i)
         lose(log.epochs[i]);
     const LogEvents found = find_events(log, {});
@@ -82,7 +82,7 @@ TEST(LogEvents, LeaveTimeToReacquireWhereNothingIsListed) {
 }
 
 TEST(LogEvents, FindMissingEpochs) {
-    ReceiverLog log = sound_log(100, 5);
+    ObservedLog log = sound_log(100, 5);
     log.epochs.erase(log.epochs.begin() + 50, log.epochs.begin() + 57);
     const LogEvents found = find_events(log, {});
     ASSERT_EQ(found.events.size(), 1u);
@@ -93,7 +93,7 @@ TEST(LogEvents, FindMissingEpochs) {
 }
 
 TEST(LogEvents, FindTypesOfFix) {
-    ReceiverLog log = sound_log(20);
+    ObservedLog log = sound_log(20);
     for (std::size_t i = 5; i < 12; ++i)
         log.epochs[i].type = i < 9 ? FixType::rtk_fixed : FixType::rtk_float;
     const LogEvents found = find_events(log, {});
@@ -106,14 +106,14 @@ TEST(LogEvents, FindTypesOfFix) {
 }
 
 TEST(LogEvents, TellADropOfAllFromOneOfASatellite) {
-    ReceiverLog log = sound_log(200);
+    ObservedLog log = sound_log(200);
     for (std::size_t i = 60; i < 75; ++i)
-        for (LoggedSatellite& satellite : log.epochs[i].satellites)
+        for (ObservedSignal& satellite : log.epochs[i].signals)
             satellite.cn0_dbhz -= 12;
     for (std::size_t i = 100; i < 120; ++i)
-        log.epochs[i].satellites[3].cn0_dbhz -= 15;
+        log.epochs[i].signals[3].cn0_dbhz -= 15;
     for (std::size_t i = 140; i < 150; ++i)
-        log.epochs[i].satellites.erase(log.epochs[i].satellites.begin() + 6);
+        log.epochs[i].signals.erase(log.epochs[i].signals.begin() + 6);
     const LogEvents found = find_events(log, {});
     ASSERT_EQ(found.events.size(), 3u);
     EXPECT_EQ(found.events[0].kind, LogEventKind::drop);
@@ -134,7 +134,7 @@ TEST(LogEvents, TellADropOfAllFromOneOfASatellite) {
 }
 
 TEST(LogScenario, WritesWhatItFound) {
-    ReceiverLog log = sound_log(100);
+    ObservedLog log = sound_log(100);
     log.name = "evil\n[run]\".ubx";
     for (std::size_t i = 30; i < 41; ++i)
         lose(log.epochs[i]);
@@ -146,12 +146,12 @@ TEST(LogScenario, WritesWhatItFound) {
     EXPECT_THAT(made->scenario, HasSubstr("evil?[run]\".ubx"));
     EXPECT_THAT(made->scenario, HasSubstr("time = \"recorded\""));
     EXPECT_THAT(made->track, HasSubstr("\n2304,216018.000000,47.000000000,8.000000000,500.0000\n"));
-    ReceiverLog nowhere = sound_log(3);
-    for (LogEpoch& epoch : nowhere.epochs)
+    ObservedLog nowhere = sound_log(3);
+    for (ObservedEpoch& epoch : nowhere.epochs)
         lose(epoch);
     EXPECT_THAT(scenario_of_log(nowhere, find_events(nowhere, {})).error().message,
                 HasSubstr("none with a fix and a place"));
-    const ReceiverLog one = sound_log(1);
+    const ObservedLog one = sound_log(1);
     const auto still = scenario_of_log(one, find_events(one, {}));
     ASSERT_TRUE(still.has_value());
     EXPECT_TRUE(still->track.empty());

@@ -5,8 +5,8 @@
 
 #include "base/core/middle.hpp"
 #include "base/time/utc_time.hpp"
-#include "detail/log_parts.hpp"
-#include "receiver/logs/ulog.hpp"
+#include "detail/observed_parts.hpp"
+#include "receiver/observed/ulog.hpp"
 
 namespace skyloop {
 namespace {
@@ -41,12 +41,12 @@ std::optional<GpsTime> ulog_time(double utc_us) {
 class UlogEpochs {
 public:
     UlogEpochs(const UlogStream& stream, const Geoid* geoid) : stream_(stream), geoid_(geoid) {}
-    Result<void> read(ReceiverLog& log);
+    Result<void> read(ObservedLog& log);
 
 private:
     std::optional<double> boot_offset_us() const;
-    LogEpoch epoch_of(const UlogRecord& record);
-    void place(const UlogRecord& record, LogEpoch& epoch);
+    ObservedEpoch epoch_of(const UlogRecord& record);
+    void place(const UlogRecord& record, ObservedEpoch& epoch);
 
     const UlogStream& stream_;
     const Geoid* geoid_;
@@ -66,7 +66,7 @@ std::optional<double> UlogEpochs::boot_offset_us() const {
     return middle_of(offsets);
 }
 
-void UlogEpochs::place(const UlogRecord& record, LogEpoch& epoch) {
+void UlogEpochs::place(const UlogRecord& record, ObservedEpoch& epoch) {
     const bool degrees = record.has("latitude_deg");
     const double scale = degrees ? 1 : 1e-7, metres = record.has("altitude_msl_m") ? 1 : 1e-3;
     const auto latitude = record.value({"latitude_deg", "lat"}), longitude = record.value({"longitude_deg", "lon"});
@@ -74,21 +74,21 @@ void UlogEpochs::place(const UlogRecord& record, LogEpoch& epoch) {
     const auto ellipsoid = record.value({"altitude_ellipsoid_m", "alt_ellipsoid"});
     const auto msl = record.value({"altitude_msl_m", "alt"});
     if (ellipsoid && (*ellipsoid != 0 || !msl)) {
-        epoch.place = logged_place(*latitude * scale, *longitude * scale, *ellipsoid * metres);
+        epoch.place = observed_place(*latitude * scale, *longitude * scale, *ellipsoid * metres);
         return;
     }
     if (!msl) return;
-    epoch.place = logged_place(*latitude * scale, *longitude * scale, *msl * metres);
+    epoch.place = observed_place(*latitude * scale, *longitude * scale, *msl * metres);
     if (!epoch.place) return;
     ++from_sea_level_;
     if (geoid_)
         epoch.place->height.above_ellipsoid += geoid_->undulation(epoch.place->latitude, epoch.place->longitude);
 }
 
-LogEpoch UlogEpochs::epoch_of(const UlogRecord& record) {
-    LogEpoch epoch;
-    epoch.type = ulog_fix_type(logged_number(record.value("fix_type")));
-    epoch.satellites_used = logged_number(record.value("satellites_used"));
+ObservedEpoch UlogEpochs::epoch_of(const UlogRecord& record) {
+    ObservedEpoch epoch;
+    epoch.type = ulog_fix_type(observed_number(record.value("fix_type")));
+    epoch.satellites_used = observed_number(record.value("satellites_used"));
     const auto accuracy = [&](std::string_view name) -> std::optional<Metres> {
         const auto value = record.value(name);
         return value && std::isfinite(*value) ? std::optional(Metres(*value)) : std::nullopt;
@@ -104,7 +104,7 @@ LogEpoch UlogEpochs::epoch_of(const UlogRecord& record) {
     return epoch;
 }
 
-Result<void> UlogEpochs::read(ReceiverLog& log) {
+Result<void> UlogEpochs::read(ObservedLog& log) {
     const auto offset = boot_offset_us();
     std::size_t on_boot_clock = 0, undated = 0;
     for (const ByteSpan bytes : stream_.records) {
@@ -118,7 +118,7 @@ Result<void> UlogEpochs::read(ReceiverLog& log) {
             ++undated;
             continue;
         }
-        LogEpoch epoch = epoch_of(record);
+        ObservedEpoch epoch = epoch_of(record);
         epoch.time = *time;
         log.epochs.push_back(std::move(epoch));
     }
@@ -135,7 +135,7 @@ Result<void> UlogEpochs::read(ReceiverLog& log) {
 
 }  // namespace
 
-Result<ReceiverLog> read_ulog(ByteSpan bytes, const std::string& name, const LogReading& reading) {
+Result<ObservedLog> read_ulog(ByteSpan bytes, const std::string& name, const ObservedReading& reading) {
     // In the order of preference; of one receiver the topic with more records tells more (the logger thins them out).
     const auto parsed = parse_ulog(bytes, name, {"vehicle_gps_position", "sensor_gps"});
     if (!parsed) return fail(parsed.error());
@@ -148,7 +148,7 @@ Result<ReceiverLog> read_ulog(ByteSpan bytes, const std::string& name, const Log
                     fmt::format("{}: a ULog without records of vehicle_gps_position or sensor_gps of receiver {}; "
                                 "expected some",
                                 name, reading.receiver));
-    ReceiverLog log;
+    ObservedLog log;
     log.name = name;
     log.format = "ULog";
     log.receiver = fmt::format("{} of instance {}{}", best->topic, best->instance,
