@@ -1,9 +1,7 @@
 /// A client of NMEA 0183 as autopilots are at their best.
 #pragma once
 
-#include <optional>
-
-#include "receiver/protocol/nmea_messages.hpp"
+#include "receiver/observed/nmea_epochs.hpp"
 #include "run/client/careful_client.hpp"
 
 namespace skyloop {
@@ -21,11 +19,10 @@ protected:
     void watch() override;
 
 private:
-    void combine();
+    void combine(const NmeaEpoch& epoch);
 
-    std::optional<Gga> gga_;
-    std::optional<Rmc> rmc_;
-    std::optional<int> fix_mode_;  // of the last GSA
+    NmeaEpochs epochs_;
+    unsigned parts_ = 0;  // of GGA and RMC in this epoch
     GpsTime solution_at_{};
 };
 

@@ -6,8 +6,10 @@
 
 #include "receiver/protocol/ubx_hardware.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
+#include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_security.hpp"
 #include "receiver/protocol/ubx_time.hpp"
+#include "run/client/ubx_configuration.hpp"
 
 namespace skyloop {
 namespace {
@@ -88,18 +90,30 @@ void CarefulUbxClient::hear_message(const StreamPiece& piece) {
             configure("sentences come that it was told not to send");
         return;
     }
-    if (const auto frame = parse_frame(piece.bytes)) hear_frame(frame->id, frame->payload);
+    if (const auto frame = parse_frame(piece.bytes)) hear_frame(*frame);
 }
 
-void CarefulUbxClient::hear_frame(UbxMessageId id, ByteSpan payload) {
+// Before protocol version 14 there is no NAV-PVT: the last one of NAV-POSLLH, NAV-SOL, NAV-VELNED and NAV-TIMEUTC makes
+// the solution.
+void CarefulUbxClient::hear_epoch(const UbxFrameView& frame) {
+    constexpr unsigned old_parts =
+        UbxEpochs::says_place | UbxEpochs::says_old_solution | UbxEpochs::says_velocity | UbxEpochs::says_utc;
+    const UbxEpochs::Taken taken = epochs_.take(frame);
+    if (taken.ended) parts_ = 0;
+    parts_ |= taken.part & old_parts;
+    const bool whole = (taken.part & UbxEpochs::says_solution) != 0 ||
+                       (parts_ == old_parts && !heard_at_.contains(NavPvt::message_id));
+    if (!whole) return;
+    parts_ = 0;
+    hear_solution(*epochs_.epoch());
+}
+
+void CarefulUbxClient::hear_frame(const UbxFrameView& frame) {
+    const auto& [id, payload] = frame;
     if (dialogue_) dialogue_->hear(id, payload);
     if (id.message_class == NavPvt::message_id.message_class) heard_at_[id] = now();
     if (id == NavTimegps::message_id) hear_time(payload);
-    if (id == NavPvt::message_id) {
-        if (const auto pvt = decode_payload<NavPvt>(payload)) hear_solution(*pvt);
-    } else if (const auto whole = parts_.hear(id, payload); whole && !heard_at_.contains(NavPvt::message_id)) {
-        hear_solution(*whole);
-    }
+    hear_epoch(frame);
     if (id == NavStatus::message_id) hear_status(payload);
     if (id == UbxMessageId{0x0A, 0x09} && payload.size() > mon_hw_jamming_byte)
         hear_warning((payload[mon_hw_jamming_byte] >> 2 & 3u) == jamming_critical, "interference (MON-HW)");
@@ -134,14 +148,15 @@ void CarefulUbxClient::hear_time(ByteSpan payload) {
         gps_time_ = GpsTimeHeard{time->i_tow, time->week * 604800.0 + time->i_tow * 1e-3};
 }
 
-void CarefulUbxClient::hear_solution(const NavPvt& pvt) {
+void CarefulUbxClient::hear_solution(const ObservedEpoch& epoch) {
     solution_at_ = now();
     if (dialogue_) return;
-    HeardSolution solution = heard_solution(pvt);
-    solution.heard = now();
+    HeardSolution solution = heard_solution(epoch, now());
+    solution.seconds = week_and_tow(epoch.time).tow_seconds();
+    solution.counts_gps_weeks = true;
     // NAV-TIMEGPS may come before or after NAV-PVT: the last one is carried on by the time of week that has passed.
     if (gps_time_) {
-        const double passed = wrapped_difference(pvt.i_tow * 1e-3, gps_time_->i_tow * 1e-3, 604800);
+        const double passed = wrapped_difference(*solution.seconds, gps_time_->i_tow * 1e-3, 604800);
         solution.gps_s = gps_time_->seconds + passed;
     }
     judge(solution);

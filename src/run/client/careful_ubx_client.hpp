@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "receiver/observed/ubx_epochs.hpp"
 #include "run/client/careful_client.hpp"
 #include "run/client/configuration_dialogue.hpp"
-#include "run/client/ubx_solution.hpp"
 
 namespace skyloop {
 
@@ -27,8 +27,9 @@ protected:
 
 private:
     void configure(const char* reason);
-    void hear_frame(UbxMessageId id, ByteSpan payload);
-    void hear_solution(const NavPvt& pvt);
+    void hear_frame(const UbxFrameView& frame);
+    void hear_epoch(const UbxFrameView& frame);
+    void hear_solution(const ObservedEpoch& epoch);
     void hear_time(ByteSpan payload);
     void hear_status(ByteSpan payload);
     void hear_warning(bool critical, const char* what);
@@ -45,7 +46,8 @@ private:
         std::uint32_t i_tow = 0;
         double seconds = 0;
     };
-    SolutionParts parts_;                   // of a receiver without NAV-PVT
+    UbxEpochs epochs_;
+    unsigned parts_ = 0;                    // of an epoch without NAV-PVT
     std::optional<GpsTimeHeard> gps_time_;  // of the last NAV-TIMEGPS
 };
 

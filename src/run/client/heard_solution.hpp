@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/time/gps_time.hpp"
+#include "receiver/observed/observed_log.hpp"
 
 namespace skyloop {
 
@@ -28,6 +29,9 @@ struct HeardSolution {
     std::optional<double> gps_s;    ///< since the GPS epoch, from week and time of week, where both are told as known
     bool counts_gps_weeks = false;  ///< `seconds` are of the GPS week
 };
+
+/// What an epoch tells, without its times of day and of the receiver's GPS week. A place at 0°, 0° is one.
+HeardSolution heard_solution(const ObservedEpoch& epoch, GpsTime heard);
 
 /// `a − b` on a circle of `wrap`, from −wrap/2 to wrap/2.
 double wrapped_difference(double a, double b, double wrap);

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "detail/dialects.hpp"
-#include "detail/heard_pieces.hpp"
 #include "detail/json_source.hpp"
+#include "detail/line_source.hpp"
 
 namespace skyloop {
 namespace {

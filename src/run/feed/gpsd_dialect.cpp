@@ -10,8 +10,8 @@
 #include "base/time/utc_time.hpp"
 #include "detail/dialects.hpp"
 #include "detail/epoch_gate.hpp"
-#include "detail/heard_pieces.hpp"
 #include "detail/json_source.hpp"
+#include "detail/line_source.hpp"
 #include "detail/motion_filter.hpp"
 
 namespace skyloop {

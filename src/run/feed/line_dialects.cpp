@@ -7,7 +7,7 @@
 
 #include "base/core/table_line.hpp"
 #include "detail/dialects.hpp"
-#include "detail/heard_pieces.hpp"
+#include "detail/line_source.hpp"
 #include "detail/motion_filter.hpp"
 
 namespace skyloop {

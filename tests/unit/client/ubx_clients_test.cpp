@@ -1,5 +1,5 @@
 #include "client_bench.hpp"
-#include "run/client/ubx_solution.hpp"
+#include "run/client/ubx_configuration.hpp"
 
 namespace skyloop::test {
 namespace {
@@ -292,38 +292,6 @@ TEST_F(CarefulUbxOfOldReceivers, ConfiguresAgainWhenOneOfThemStops) {
     EXPECT_GT(receiver.settings, 5);
     EXPECT_TRUE(receiver.old_messages.contains(NavVelned::message_id));
     EXPECT_TRUE(bench.trusts()) << bench.reason();
-}
-
-TEST(SolutionOfParts, NeedsAllFourOfOneEpochInAnyOrder) {
-    SolutionParts parts;
-    NavVelned extreme;
-    extreme.i_tow = 200;
-    extreme.vel_n = std::numeric_limits<std::int32_t>::max();
-    extreme.vel_d = -12;
-    extreme.s_acc = std::numeric_limits<std::uint32_t>::max();
-    const auto hear = [&](const auto& message) {
-        const Bytes frame = encode_frame(message);
-        return parts.hear(parse_frame(frame)->id, parse_frame(frame)->payload);
-    };
-    EXPECT_FALSE(hear(NavTimeutc{.i_tow = 100}));
-    EXPECT_FALSE(hear(extreme));  // another epoch: the time before does not count
-    EXPECT_FALSE(hear(NavSol{.i_tow = 200, .gps_fix = 3, .flags = 0xDD, .num_sv = 9}));
-    EXPECT_FALSE(hear(NavPosllh{.i_tow = 200, .lon = -5}));
-    EXPECT_FALSE(hear(NavPosllh{.i_tow = 200, .lon = -6})) << "three kinds are not four";
-    EXPECT_FALSE(hear(NavPvt{}));
-    EXPECT_FALSE(parts.hear(NavTimeutc::message_id, {})) << "too short";
-    const auto whole = hear(NavTimeutc{.i_tow = 200, .year = 2026, .valid = 0xF3});
-    ASSERT_TRUE(whole);
-    EXPECT_EQ(whole->lon, -6);
-    EXPECT_EQ(whole->fix_type, 3);
-    EXPECT_EQ(whole->flags, 1);
-    EXPECT_EQ(whole->num_sv, 9);
-    EXPECT_EQ(whole->year, 2026);
-    EXPECT_EQ(whole->valid, 0) << "UTC is not known yet";
-    EXPECT_EQ(whole->vel_n, std::numeric_limits<std::int32_t>::max());
-    EXPECT_EQ(whole->vel_d, -120);
-    EXPECT_EQ(whole->s_acc, std::numeric_limits<std::uint32_t>::max());
-    EXPECT_FALSE(hear(NavTimeutc{.i_tow = 200})) << "once";
 }
 
 TEST(NaiveUbx, WaitsForTheVersionForEver) {
