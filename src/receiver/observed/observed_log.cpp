@@ -118,8 +118,7 @@ bool is_sbf_place(ByteSpan bytes) {
     if (bytes.size() < sbf_head_size || bytes[0] != sbf_sync_1 || bytes[1] != sbf_sync_2) return false;
     const std::size_t size = sbf_block_size(bytes).value_or(bytes.size() + 1);
     const auto block = size <= bytes.size() ? parse_sbf(bytes.first(size)) : std::nullopt;
-    return block &&
-           (block->number == SbfPvtGeodetic::block_number || block->number == SbfPvtCartesian::block_number);
+    return block && (block->number == SbfPvtGeodetic::block_number || block->number == SbfPvtCartesian::block_number);
 }
 
 }  // namespace

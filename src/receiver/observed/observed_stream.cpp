@@ -297,8 +297,8 @@ Result<ObservedLog> StreamReader::log_of_more() {
     ObservedLog& taken = take_nmea ? *of_nmea : binary;
     if (take_nmea && !binary.board.empty()) taken.receiver = binary.receiver, taken.board = binary.board;
     if (solves && (take_nmea || nmea_places > binary_places))
-        taken.notes.push_back(fmt::format("{} epochs of NMEA and {} of {} have a place; those of {} are taken", nmea_places,
-                                          binary_places, binary.format, taken.format));
+        taken.notes.push_back(fmt::format("{} epochs of NMEA and {} of {} have a place; those of {} are taken",
+                                          nmea_places, binary_places, binary.format, taken.format));
     return std::move(taken);
 }
 

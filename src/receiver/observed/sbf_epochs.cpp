@@ -41,7 +41,8 @@ FixType sbf_fix_type(unsigned mode, unsigned error) {
 
 void take_motion(const SbfPvtGeodetic& pvt, ObservedEpoch& epoch) {
     if (says(pvt.latitude) && says(pvt.longitude) && says(pvt.height))
-        epoch.place = observed_place(Angle::radians(pvt.latitude).deg(), Angle::radians(pvt.longitude).deg(), pvt.height);
+        epoch.place =
+            observed_place(Angle::radians(pvt.latitude).deg(), Angle::radians(pvt.longitude).deg(), pvt.height);
     if (says(pvt.vel_north) && says(pvt.vel_east) && says(pvt.vel_up))
         epoch.velocity = VelocityNed{pvt.vel_north, pvt.vel_east, -pvt.vel_up};
 }
@@ -69,8 +70,7 @@ void SbfEpochs::with(const SbfBlockView& block, Taker&& taker) {
     const bool timed = told && told->time.tow != sbf_no_time && told->time.wnc != 0xFFFF;
     taken_.is_senseless = !told || (timed && (told->time.tow >= sbf_week_ms || told->time.wnc > last_gps_week));
     if (taken_.is_senseless) return;
-    const GpsTime time =
-        timed ? to_gps_time({told->time.wnc, std::chrono::milliseconds(told->time.tow)}) : GpsTime{};
+    const GpsTime time = timed ? to_gps_time({told->time.wnc, std::chrono::milliseconds(told->time.tow)}) : GpsTime{};
     if (!under_way_ || under_way_->timed != timed || under_way_->time != time || (!timed && under_way_->is_solution)) {
         taken_.ended = end();
         under_way_.emplace();
@@ -131,8 +131,8 @@ void SbfEpochs::take_satellites(const SbfBlockView& block) {
             const bool precise = (type & 31u) == 1 || (type & 31u) == 2;
             const auto id = satellite_from_sbf(svid);
             if (id && cn0 != 0xFF)
-                add_signal(epoch.signals, {*id, cn0 * 0.25 + (precise ? 0 : 10), {},
-                                           every_signal_ && !first ? 1 + (type & 31) : 0});
+                add_signal(epoch.signals,
+                           {*id, cn0 * 0.25 + (precise ? 0 : 10), {}, every_signal_ && !first ? 1 + (type & 31) : 0});
         };
         for (const SbfMeasuredSatellite& satellite : measured.satellites) {
             add(satellite.svid, satellite.cn0, satellite.type, true);
