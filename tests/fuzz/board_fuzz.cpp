@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "firmware/receiver.hpp"
-#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 #include "require.hpp"
 #include "run/scenario/board_file.hpp"
 
@@ -26,9 +26,9 @@ void check_receiver(const firmware::BoardProfile& board) {
     Bytes sent;
     for (const firmware::Receiver::Sent& piece : receiver.output(epoch.fix.time + std::chrono::seconds(60)))
         if (piece.port == firmware::PortId::uart1) sent.insert(sent.end(), piece.bytes.begin(), piece.bytes.end());
-    SentenceSplitter splitter;
-    for (const std::string& line : splitter.feed(sent))
-        require(parse_sentence(line).has_value());
+    StreamSplitter splitter;
+    splitter.feed(sent);
+    require(splitter.counts().bad[static_cast<std::size_t>(StreamKind::nmea)] == 0);
 }
 
 }  // namespace

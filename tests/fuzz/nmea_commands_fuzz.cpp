@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <map>
+#include <sstream>
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/nmea_commands.hpp"
@@ -81,8 +82,10 @@ void talk_to(Personality personality, const std::vector<std::string>& lines) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    SentenceSplitter splitter;
-    const std::vector<std::string> lines = splitter.feed({data, size});
+    std::istringstream stream(std::string(reinterpret_cast<const char*>(data), size));
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
     for (const Personality personality : {Personality::mute, Personality::ublox, Personality::mtk, Personality::airoha})
         talk_to(personality, lines);
     return 0;

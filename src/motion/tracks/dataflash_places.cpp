@@ -148,35 +148,25 @@ void DataflashStart::take_filter(const DataflashRecord& record, std::int64_t ns)
     }
 }
 
-// Und of GPA is sea level less ellipsoid: the undulation with its sign changed.
 void DataflashStart::take_receiver(const DataflashRecord& record, std::int64_t ns) {
     const std::string& name = record.name();
     const bool second = name == "GPS2" || name == "GPA2";
     if (!second && name != "GPS" && name != "GPA") return;
     DataflashReceiver& receiver = receivers[second ? 1 : small_number(record.raw({"I"}))];
     if (name.starts_with("GPA")) {
-        constexpr double highest_m = 200;
-        if (const auto und = record.value("Und"); und && *und != 0 && std::abs(*und) < highest_m)
-            receiver.undulations_mm.push_back(std::llround(*und * -1e3));
+        if (const auto undulation = dataflash_undulation(record))
+            receiver.undulations_mm.push_back(std::llround(*undulation * 1e3));
         return;
     }
-    const double status = record.value("Status").value_or(0);
-    std::optional<std::int64_t> gps_ns;
-    const double week = record.raw({"GWk", "Week"}).value_or(0), ms = record.raw({"GMS", "TimeMS"}).value_or(-1);
-    constexpr double fix_2d = 2, fix_3d = 3, last_week = 6000, first_week = 1000;
-    if (week > first_week && week < last_week && ms >= 0 && ms < 1000.0 * seconds_per_week) {
-        gps_ns = to_gps_time(static_cast<std::int64_t>(week), ms / 1000).time_since_epoch().count();
-        if (status >= fix_3d) offsets_3d.push_back(*gps_ns - ns);
-        offsets.push_back(*gps_ns - ns);
-    }
-    const auto place = global_sample(record, ns);
-    if (status < fix_2d || !place) return;
-    auto row = row_at(*place);
-    const auto speed = record.value("Spd"), course = record.value("GCrs");
-    if (row && speed && course)
-        row->velocity_ned = logged_velocity(*speed * std::cos(Angle::degrees(*course).rad()),
-                                            *speed * std::sin(Angle::degrees(*course).rad()), record.value("VZ"));
-    if (row) receiver.epochs.push_back({*row, gps_ns});
+    const auto [told, time] = dataflash_fix(record);
+    const auto gps_ns = time ? std::optional(time->time_since_epoch().count()) : std::nullopt;
+    if (gps_ns && told.type >= FixType::fix_3d) offsets_3d.push_back(*gps_ns - ns);
+    if (gps_ns) offsets.push_back(*gps_ns - ns);
+    if (!told.place) return;
+    FlightRow row{ns, *told.place};
+    if (told.velocity)
+        row.velocity_ned = logged_velocity(told.velocity->north, told.velocity->east, told.velocity->down);
+    receiver.epochs.push_back({row, gps_ns});
 }
 
 }  // namespace skyloop

@@ -6,7 +6,7 @@
 
 #include "base/core/middle.hpp"
 #include "base/geo/local_frame.hpp"
-#include "base/time/utc_time.hpp"
+#include "receiver/observed/ulog.hpp"
 
 namespace skyloop {
 namespace {
@@ -153,10 +153,8 @@ std::optional<std::int64_t> flight_clock_ns(std::optional<double> microseconds) 
 }
 
 std::optional<std::int64_t> gps_ns_of_posix_us(double microseconds) {
-    constexpr double since_2000_us = 946684800e6, until_2100_us = 4102444800e6;
-    if (!(microseconds > since_2000_us && microseconds < until_2100_us)) return std::nullopt;
-    const auto whole = std::chrono::microseconds(static_cast<std::int64_t>(microseconds));
-    return from_posix(whole, LeapSeconds::announced()).time_since_epoch().count();
+    const auto time = time_of_posix_us(microseconds);
+    return time ? std::optional(time->time_since_epoch().count()) : std::nullopt;
 }
 
 std::optional<Eigen::Quaterniond> logged_quaternion(std::optional<double> w, std::optional<double> x,

@@ -10,12 +10,12 @@ namespace skyloop {
 namespace {
 
 // A height above the ellipsoid that differs from the one above the sea; simulators without a geoid write both alike.
-bool tells_ellipsoid(const UlogStream& stream, std::string_view msl, std::string_view ellipsoid, double unit_m) {
+bool global_tells_ellipsoid(const UlogStream& stream) {
     constexpr double least_m = 0.01;
     return std::any_of(stream.records.begin(), stream.records.end(), [&](ByteSpan bytes) {
         const UlogRecord record(stream.fields, bytes);
-        const double above = record.value(ellipsoid).value_or(0), sea = record.value(msl).value_or(0);
-        return above != 0 && std::abs(above - sea) * unit_m > least_m;
+        const double above = record.value("alt_ellipsoid").value_or(0), sea = record.value("alt").value_or(0);
+        return above != 0 && std::abs(above - sea) > least_m;
     });
 }
 
@@ -128,7 +128,7 @@ VectorSeries UlogTrack::velocities_of(std::string_view topic) const {
 void UlogTrack::offer_global(std::string_view topic, std::string_view velocity_topic) {
     const UlogStream* source = stream(topic);
     if (!source) return;
-    const bool ellipsoid = tells_ellipsoid(*source, "alt", "alt_ellipsoid", 1);
+    const bool ellipsoid = global_tells_ellipsoid(*source);
     const VectorSeries velocities = velocities_of(velocity_topic);
     std::vector<FlightRow> rows;
     std::optional<ByteSpan> before;
@@ -163,32 +163,15 @@ void UlogTrack::offer_receivers() {
         offer_receiver(*receiver);
 }
 
-// What the receiver measured. Simulators leave the type of fix at 0.
+// What the receiver measured.
 void UlogTrack::offer_receiver(const UlogStream& source) {
-    const bool degrees = source.fields.contains("latitude_deg"), metres = source.fields.contains("altitude_msl_m");
-    const std::string_view msl = metres ? "altitude_msl_m" : "alt";
-    const std::string_view above = metres ? "altitude_ellipsoid_m" : "alt_ellipsoid";
-    const double degree = degrees ? 1 : 1e-7, metre = metres ? 1 : 1e-3;
-    const bool ellipsoid = tells_ellipsoid(source, msl, above, metre);
-    const bool types = std::any_of(source.records.begin(), source.records.end(), [&](ByteSpan bytes) {
-        return UlogRecord(source.fields, bytes).value("fix_type").value_or(0) > 0;
-    });
     std::vector<FlightRow> rows;
-    for (const ByteSpan bytes : source.records) {
-        const UlogRecord record(source.fields, bytes);
-        const auto number = [&](std::string_view name) { return record.value(name).value_or(std::nan("")); };
-        const auto ns = flight_clock_ns(record.value("timestamp"));
-        constexpr double fix_2d = 2;
-        if (!ns || (types && record.value("fix_type").value_or(0) < fix_2d)) continue;
-        auto row =
-            flight_row(*ns, number(degrees ? "latitude_deg" : "lat") * degree,
-                       number(degrees ? "longitude_deg" : "lon") * degree, number(ellipsoid ? above : msl) * metre);
-        if (!row) continue;
-        row->above_sea = !ellipsoid;
-        if (record.value("vel_ned_valid").value_or(1) != 0)
-            row->velocity_ned =
-                logged_velocity(record.value("vel_n_m_s"), record.value("vel_e_m_s"), record.value("vel_d_m_s"));
-        rows.push_back(*row);
+    for (const UlogFix& fix : ulog_fixes(source)) {
+        const auto ns = flight_clock_ns(fix.boot_us);
+        if (!ns || !fix.told.place || fix.told.type == FixType::none) continue;
+        FlightRow& row = rows.emplace_back(FlightRow{*ns, *fix.told.place, fix.above_sea});
+        if (const auto& velocity = fix.told.velocity)
+            row.velocity_ned = logged_velocity(velocity->north, velocity->east, velocity->down);
     }
     offer(source.instance == 0 ? source.topic : fmt::format("{} {}", source.topic, source.instance), std::move(rows));
 }
@@ -244,17 +227,12 @@ std::optional<std::int64_t> UlogTrack::gps_offset() {
 void UlogTrack::learn_undulation() {
     std::vector<std::int64_t> undulations_mm;
     for (const UlogStream& source : log_.streams) {
-        const bool metres = source.fields.contains("altitude_msl_m");
-        if (!metres && !source.fields.contains("lat")) continue;
         if (source.topic != "vehicle_gps_position" && source.topic != "sensor_gps") continue;
-        for (const ByteSpan bytes : source.records) {
-            const UlogRecord record(source.fields, bytes);
-            const double above = record.value({"altitude_ellipsoid_m", "alt_ellipsoid"}).value_or(0);
-            const double sea = record.value({"altitude_msl_m", "alt"}).value_or(0);
-            const double undulation_mm = (above - sea) * (metres ? 1e3 : 1);
-            constexpr double highest_mm = 200e3;
-            if (above != 0 && std::abs(undulation_mm) >= 1 && std::abs(undulation_mm) < highest_mm)
-                undulations_mm.push_back(std::llround(undulation_mm));
+        for (const UlogFix& fix : ulog_fixes(source)) {
+            constexpr double least_m = 1e-3, highest_m = 200;
+            const double undulation_m = fix.undulation_m.value_or(0);
+            if (std::abs(undulation_m) >= least_m && std::abs(undulation_m) < highest_m)
+                undulations_mm.push_back(std::llround(undulation_m * 1e3));
         }
     }
     if (const auto middle = middle_offset(undulations_mm)) flight_.undulation_m = static_cast<double>(*middle) * 1e-3;

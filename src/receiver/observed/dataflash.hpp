@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
+#include "receiver/observed/observed_log.hpp"
 
 namespace skyloop {
 
@@ -55,6 +56,16 @@ private:
     const DataflashFormat& format_;
     ByteSpan bytes_;
 };
+
+/// What a record GPS says: without its time where it tells none, its height above the sea. Milliseconds of the week
+/// under any multiplier are what the raw number says.
+struct DataflashFix {
+    ObservedEpoch told;
+    std::optional<GpsTime> time;
+};
+DataflashFix dataflash_fix(const DataflashRecord& record);
+/// What a record GPA says of the geoid, m above the ellipsoid: Und is sea level less ellipsoid, with its sign changed.
+std::optional<double> dataflash_undulation(const DataflashRecord& record);
 
 /// Whether the bytes begin as such a log does.
 bool is_dataflash(ByteSpan bytes);

@@ -63,38 +63,17 @@ bool DataflashEpochs::asked(const DataflashRecord& record, std::string_view base
 
 void DataflashEpochs::take_gps(const DataflashRecord& record) {
     ++gps_records_;
-    // Milliseconds of the week under any multiplier are what the raw number says.
-    const double week = record.raw({"GWk", "Week"}).value_or(0), ms = record.raw({"GMS", "TimeMS"}).value_or(-1);
-    if (!(week > 0 && week < 10000 && ms >= 0 && ms < 1000.0 * seconds_per_week)) {
-        ++undated_;
-        return;
-    }
-    static constexpr std::array types{FixType::none,  FixType::none,      FixType::fix_2d,   FixType::fix_3d,
-                                      FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
-    ObservedEpoch epoch;
-    epoch.time = to_gps_time(static_cast<std::int64_t>(week), ms / 1000);
-    const auto status = static_cast<std::size_t>(observed_number(record.value({"Status"})));
-    epoch.type = status < types.size() ? types[status] : FixType::none;
-    epoch.satellites_used = observed_number(record.value({"NSats"}));
-    const auto latitude = record.value({"Lat"}), longitude = record.value({"Lng"});
-    const auto altitude = record.value({"Alt"});
-    if (epoch.type != FixType::none && latitude && longitude && altitude) {
-        epoch.place = observed_place(*latitude, *longitude, *altitude);
-        const auto speed = record.value({"Spd"}), course = record.value({"GCrs"});
-        const auto down = record.value({"VZ"});
-        if (epoch.place && speed && course && down) {
-            const double azimuth = Angle::degrees(*course).rad();
-            epoch.velocity = VelocityNed{*speed * std::cos(azimuth), *speed * std::sin(azimuth), *down};
-        }
-    }
+    DataflashFix fix = dataflash_fix(record);
+    if (!fix.time) return static_cast<void>(++undated_);
+    ObservedEpoch& epoch = log_.epochs.emplace_back(std::move(fix.told));
+    epoch.time = *fix.time;
     if (epoch.place && undulation_) epoch.place->height.above_ellipsoid += Metres(*undulation_);
     on_sea_level_.push_back(epoch.place && !undulation_);
-    log_.epochs.push_back(std::move(epoch));
 }
 
-// GPA follows the GPS record of its sample. Und is sea level less ellipsoid: the undulation with its sign changed.
+// GPA follows the GPS record of its sample.
 void DataflashEpochs::take_accuracy(const DataflashRecord& record) {
-    if (const auto und = record.value({"Und"}); und && *und != 0 && std::abs(*und) < 200) undulation_ = -*und;
+    if (const auto told = dataflash_undulation(record)) undulation_ = told;
     if (log_.epochs.empty()) return;
     if (const auto h = record.value({"HAcc"})) log_.epochs.back().horizontal_accuracy = Metres(*h);
     if (const auto v = record.value({"VAcc"})) log_.epochs.back().vertical_accuracy = Metres(*v);
@@ -123,6 +102,35 @@ Result<void> DataflashEpochs::add_undulations() {
 }
 
 }  // namespace
+
+DataflashFix dataflash_fix(const DataflashRecord& record) {
+    static constexpr std::array types{FixType::none,  FixType::none,      FixType::fix_2d,   FixType::fix_3d,
+                                      FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
+    constexpr double first_week = 1000, last_week = 6000;
+    DataflashFix fix;
+    ObservedEpoch& told = fix.told;
+    const double week = record.raw({"GWk", "Week"}).value_or(0), ms = record.raw({"GMS", "TimeMS"}).value_or(-1);
+    if (week > first_week && week < last_week && ms >= 0 && ms < 1000.0 * seconds_per_week)
+        fix.time = to_gps_time(static_cast<std::int64_t>(week), ms / 1000);
+    const auto status = static_cast<std::size_t>(observed_number(record.value({"Status"})));
+    told.is_solution = true;
+    told.type = status < types.size() ? types[status] : FixType::none;
+    told.satellites_used = observed_number(record.value({"NSats"}));
+    const auto latitude = record.value({"Lat"}), longitude = record.value({"Lng"}), altitude = record.value({"Alt"});
+    if (told.type == FixType::none || !latitude || !longitude || !altitude) return fix;
+    told.place = observed_place(*latitude, *longitude, *altitude);
+    const auto speed = record.value({"Spd"}), course = record.value({"GCrs"}), down = record.value({"VZ"});
+    if (!told.place || !speed || !course || !down) return fix;
+    const double azimuth = Angle::degrees(*course).rad();
+    told.velocity = VelocityNed{*speed * std::cos(azimuth), *speed * std::sin(azimuth), *down};
+    return fix;
+}
+
+std::optional<double> dataflash_undulation(const DataflashRecord& record) {
+    constexpr double highest_m = 200;
+    const auto und = record.value({"Und"});
+    return und && *und != 0 && std::abs(*und) < highest_m ? std::optional(-*und) : std::nullopt;
+}
 
 Result<ObservedLog> read_dataflash(ByteSpan bytes, const std::string& name, const ObservedReading& reading) {
     return DataflashEpochs(name, reading).read(bytes);

@@ -14,6 +14,7 @@
 
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
+#include "receiver/observed/observed_log.hpp"
 
 namespace skyloop {
 
@@ -51,6 +52,22 @@ struct Ulog {
     std::string hardware;             ///< information "ver_hw"
     std::size_t dropouts = 0, dropout_ms = 0, skipped_bytes = 0, cut_records = 0;
 };
+
+/// One record of a receiver.
+struct UlogFix {
+    std::optional<double> utc_us, boot_us;  ///< since 1970, and by the autopilot's clock
+    ObservedEpoch told;                     ///< without its time
+    bool above_sea = false;                 ///< the height of its place is one above the sea
+    std::optional<double> undulation_m;     ///< of the receiver's geoid
+};
+
+/// The records of vehicle_gps_position or sensor_gps (PX4-Autopilot, msg/SensorGps.msg), whose fields have had two
+/// kinds of names. Simulators without a geoid write both heights alike, and leave the type of fix at 0: where all
+/// records do, heights are above the sea, and the places are fixes.
+std::vector<UlogFix> ulog_fixes(const UlogStream& stream);
+
+/// GPS time of a POSIX time in microseconds; nothing for a clock that was not set: before 2000, or after 2100.
+std::optional<GpsTime> time_of_posix_us(double microseconds);
 
 /// Whether the bytes begin as such a log does.
 bool is_ulog(ByteSpan bytes);

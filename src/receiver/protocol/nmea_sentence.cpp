@@ -11,8 +11,6 @@
 namespace skyloop {
 namespace {
 
-constexpr std::size_t longest_line = 256;  // RECEIVER.md 1.4
-
 bool printable(char c) { return c >= 0x20 && c <= 0x7e; }
 
 // The value of a hexadecimal digit, or −1.
@@ -105,34 +103,6 @@ Result<SentenceView> parse_sentence(std::string_view line) {
         sentence.fields.push_back(body.substr(0, comma));
     }
     return sentence;
-}
-
-std::vector<std::string> SentenceSplitter::feed(ByteSpan bytes) {
-    std::vector<std::string> lines;
-    for (const std::uint8_t byte : bytes)
-        take(static_cast<char>(byte), lines);
-    return lines;
-}
-
-void SentenceSplitter::drop() {
-    if (!line_.empty()) ++dropped_;
-    line_.clear();
-    carriage_return_ = false;
-}
-
-void SentenceSplitter::take(char c, std::vector<std::string>& lines) {
-    if (c == '\n') {
-        if (!line_.empty()) lines.push_back(line_);
-        line_.clear();
-        carriage_return_ = false;
-        return;
-    }
-    if (c == '\r' && !line_.empty()) {
-        carriage_return_ = true;
-        return;
-    }
-    if (carriage_return_ || !printable(c) || c == '$' || line_.size() == longest_line) drop();
-    if (!line_.empty() || c == '$' || c == '!') line_ += c;
 }
 
 }  // namespace skyloop

@@ -1,4 +1,4 @@
-/// NMEA 0183 sentences as text: building, checking and finding them in a stream.
+/// NMEA 0183 sentences as text: building and checking them. StreamSplitter finds them in a stream.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
 
 namespace skyloop {
@@ -54,26 +53,5 @@ struct SentenceView {
 /// Fails with `input` when it does not start with `$` or `!`, has a character that is not printable, no checksum or a
 /// wrong one (either letter case is accepted).
 Result<SentenceView> parse_sentence(std::string_view line);
-
-/// Finds sentences in a byte stream with whatever else it carries (RECEIVER.md 1.4).
-///
-/// A line runs from `$` or `!` to LF, before which carriage returns may stand. A line that grows beyond 256 characters
-/// or meets a byte that is not printable is dropped, and the search goes on at that byte; a `$` starts a line anew.
-/// State: the line so far.
-class SentenceSplitter {
-public:
-    /// The lines that `bytes` completes, without line ends, checksums not yet verified.
-    std::vector<std::string> feed(ByteSpan bytes);
-    /// Lines begun and thrown away.
-    [[nodiscard]] std::size_t dropped() const { return dropped_; }
-
-private:
-    void take(char c, std::vector<std::string>& lines);
-    void drop();
-
-    std::string line_;
-    bool carriage_return_ = false;
-    std::size_t dropped_ = 0;
-};
 
 }  // namespace skyloop

@@ -6,14 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "base/core/random.hpp"
-
 namespace skyloop {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 TEST(NmeaChecksum, IsThatOfCapturedSentences) {
     EXPECT_EQ(nmea_checksum("GNRMC,223745.00,A,3806.62964,N,12237.61382,W,0.040,,110720,,,D,V"), 0x0E);
@@ -70,53 +66,6 @@ TEST(ParseSentence, RefusesWithTheReason) {
     EXPECT_FALSE(parse_sentence(""));
     EXPECT_FALSE(parse_sentence("$"));
     EXPECT_FALSE(parse_sentence("*00"));
-}
-
-TEST(SentenceSplitter, FindsSentencesAmongGarbage) {
-    SentenceSplitter splitter;
-    const std::string stream =
-        std::string("\xb5\x62\x01\x07") + "noise$GNGLL,,,,,,V,N*7A\r\n\r\n\n%dm@51$A\x80$B,1*00\n!AIVDM*00\r\nrest";
-    EXPECT_THAT(splitter.feed(to_bytes(stream)), ElementsAre("$GNGLL,,,,,,V,N*7A", "$B,1*00", "!AIVDM*00"));
-    EXPECT_EQ(splitter.dropped(), 1U);
-}
-
-TEST(SentenceSplitter, DropsLongLinesAndResumes) {
-    SentenceSplitter splitter;
-    const std::string longest = "$" + std::string(255, 'a');
-    EXPECT_THAT(splitter.feed(to_bytes(longest + "\r\n")), ElementsAre(longest));
-    EXPECT_THAT(splitter.feed(to_bytes(longest + "b\r\n")), IsEmpty());
-    EXPECT_EQ(splitter.dropped(), 1U);
-    EXPECT_THAT(splitter.feed(to_bytes("$ok*00\n")), ElementsAre("$ok*00"));
-}
-
-TEST(SentenceSplitter, StartsAnewAtADollarAndAfterALoneCarriageReturn) {
-    SentenceSplitter splitter;
-    EXPECT_THAT(splitter.feed(to_bytes("$GNGGA,12$GNRMC,1*00\r\n$cut\rx\n$cut\r\rx\n$a\r$b\r\n")),
-                ElementsAre("$GNRMC,1*00", "$b"));
-    EXPECT_EQ(splitter.dropped(), 4U);
-    // A line that some program ended once more.
-    EXPECT_THAT(splitter.feed(to_bytes("$ok*00\r\r\n")), ElementsAre("$ok*00"));
-    EXPECT_EQ(splitter.dropped(), 4U);
-}
-
-TEST(SentenceSplitter, GivesTheSameLinesHoweverTheStreamIsSplit) {
-    RandomStream random(7, "splitter");
-    const std::string alphabet = "$!\r\n*A,\x80";
-    std::string stream;
-    for (int i = 0; i < 20000; ++i)
-        stream += alphabet[random.bits() % alphabet.size()];
-    SentenceSplitter whole, pieces;
-    const auto expected = whole.feed(to_bytes(stream));
-    std::vector<std::string> found;
-    for (std::size_t at = 0; at < stream.size();) {
-        const std::size_t size = 1 + random.bits() % 50;
-        for (auto& line : pieces.feed(to_bytes(std::string_view(stream).substr(at, size))))
-            found.push_back(line);
-        at += size;
-    }
-    EXPECT_GT(expected.size(), 100U);
-    EXPECT_EQ(found, expected);
-    EXPECT_EQ(pieces.dropped(), whole.dropped());
 }
 
 }  // namespace
