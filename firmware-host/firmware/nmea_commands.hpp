@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/bytes.hpp"
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
 #include "firmware/port_id.hpp"

@@ -110,8 +110,9 @@ int compare_files(const CompareOptions& options) {
 }  // namespace
 
 Action add_compare_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "compare", "Statistics of two fix files (CSV, NMEA, UBX or RTKLIB .pos) and their difference in percent");
+    CLI::App* command = app.add_subcommand("compare",
+                                           "Statistics of two files of fixes (receivers' logs, RTKLIB .pos, CSV or "
+                                           "tracks) and their difference in percent");
     auto options = std::make_shared<CompareOptions>();
     command->add_option("A", options->a, "The candidate, e.g. a simulated fixes.csv, or the folder that holds it")
         ->required();

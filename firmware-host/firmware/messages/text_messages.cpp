@@ -1,3 +1,4 @@
+#include "base/core/bytes.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/nmea_report.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"

@@ -100,24 +100,26 @@ Result<ObservedLog> finish_log(ObservedLog log, const ObservedReading& reading) 
 
 namespace {
 
-// Any whole message with a place, after whatever else a receiver sends.
+// Any whole message with a place, after whatever else a receiver sends. None is longer than this.
+constexpr std::size_t longest_place = 256;
 constexpr std::array ubx_places{NavPvt::message_id, NavPvat::message_id, NavPosllh::message_id, NavSol::message_id,
                                 NavHpposllh::message_id};
 
 bool is_ubx_place(ByteSpan bytes) {
     constexpr std::size_t length_at = 4;
-    if (bytes.size() < ubx_head_size + ubx_tail_size || bytes[0] != ubx_sync_1 || bytes[1] != ubx_sync_2) return false;
-    if (std::find(ubx_places.begin(), ubx_places.end(), UbxMessageId{bytes[2], bytes[3]}) == ubx_places.end())
-        return false;
+    if (bytes.size() < ubx_head_size || bytes[0] != ubx_sync_1 || bytes[1] != ubx_sync_2) return false;
+    const UbxMessageId id{bytes[2], bytes[3]};
     const std::size_t size =
         ubx_head_size + ubx_tail_size + bytes[length_at] + (std::size_t{bytes[length_at + 1]} << 8);
-    return size <= bytes.size() && parse_frame(bytes.first(size)).has_value();
+    return size <= std::min(bytes.size(), longest_place) &&
+           std::find(ubx_places.begin(), ubx_places.end(), id) != ubx_places.end() && parse_frame(bytes.first(size));
 }
 
 bool is_sbf_place(ByteSpan bytes) {
     if (bytes.size() < sbf_head_size || bytes[0] != sbf_sync_1 || bytes[1] != sbf_sync_2) return false;
-    const std::size_t size = sbf_block_size(bytes).value_or(bytes.size() + 1);
-    const auto block = size <= bytes.size() ? parse_sbf(bytes.first(size)) : std::nullopt;
+    const auto size = sbf_block_size(bytes);
+    const auto block =
+        size && *size <= std::min(bytes.size(), longest_place) ? parse_sbf(bytes.first(*size)) : std::nullopt;
     return block && (block->number == SbfPvtGeodetic::block_number || block->number == SbfPvtCartesian::block_number);
 }
 

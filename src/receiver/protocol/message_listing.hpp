@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "base/core/bytes.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 #include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"

@@ -1,4 +1,5 @@
 #include "run/emulator/dialogue.hpp"
+#include "base/core/bytes.hpp"
 
 #include <fmt/format.h>
 

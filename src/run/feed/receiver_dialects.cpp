@@ -171,6 +171,7 @@ public:
         StreamSource::reconnected();
         epochs_.end();
         climb_.reset();
+        told_.reset();
     }
 
 private:
@@ -201,6 +202,7 @@ private:
                                 : Height{motion.altitude->value(), false};
         if (!fixed || !motion.latitude) return report_refusal(news, "the receiver has no fix");
         if (!height_) return report_refusal(news, "positions without a height; expected GGA or GNS sentences");
+        if (std::exchange(told_, time) == time) return;  // said twice
         SourcePose pose;
         pose.latitude_deg = motion.latitude->deg();
         pose.longitude_deg = motion.longitude->deg();
@@ -243,7 +245,8 @@ private:
 
     NmeaEpochs epochs_;
     NmeaCalendar calendar_;
-    std::optional<Height> height_;  // the last one
+    std::optional<Height> height_;     // the last one
+    std::optional<Nanoseconds> told_;  // when the last epoch was
     std::optional<ClimbFilter> climb_;
 };
 

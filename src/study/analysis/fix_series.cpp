@@ -156,8 +156,7 @@ Result<FixSeries> parse_by_content(std::string_view text, const std::string& nam
     if (is_observed(bytes)) return observed();
     Result<FixSeries> table = series_of_table(text, name);
     if (table) return table;
-    if (hints_at_receiver(text)) return observed();
-    if (!is_track(bytes, name)) return table;
+    if (!is_track(bytes, name)) return hints_at_receiver(text) ? observed() : table;
     const auto track = read_track(bytes, name, {geoid, std::nullopt});
     if (!track) return fail(track.error());
     return series_of(*track);

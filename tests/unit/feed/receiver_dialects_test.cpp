@@ -6,6 +6,7 @@
 #include "dialect_bytes.hpp"
 #include "dialect_pose.hpp"
 #include "motion/trajectory/live_path.hpp"
+#include "receiver/protocol/ubx_inertial.hpp"
 #include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {
@@ -135,6 +136,14 @@ TEST(NmeaDialect, MergesTheSentencesOfAnEpoch) {
     EXPECT_EQ(second.samples[0].source_time, Nanoseconds(gps_s * 1'000'000'000));
     expect_pose(second.samples[0], {1e-7, 1e-3, 0.1, 0, 0, false, false});
     EXPECT_TRUE(hear_text(*dialect, sentence("GPVTG,53.1,T,,M,9.7,N,18.0,K,A")).samples.empty());
+}
+
+TEST(NmeaDialect, AnEpochThatIsSaidTwiceIsToldOnce) {
+    const auto dialect = dialect_named("nmea");
+    hear_text(*dialect, rmc("123455.00") + gga("123455.00"));
+    const std::string epoch = rmc("123456.00") + gga("123456.00");
+    EXPECT_EQ(hear_text(*dialect, epoch).samples.size(), 2u);  // the first ends, the second is whole
+    EXPECT_TRUE(hear_text(*dialect, epoch + epoch).samples.empty());
 }
 
 TEST(NmeaDialect, AMovingReceiverBeginsWithoutAJump) {
@@ -284,6 +293,23 @@ TEST(UbxDialect, ReadsNavPvt) {
     EXPECT_EQ(news.samples[1].source_time, Nanoseconds((gps_s + 1) * 1'000'000'000));
     EXPECT_EQ(news.samples[1].received_ns, 2);
     EXPECT_EQ(dialect->hear(nav_pvt(itow + 2000), 3).samples.size(), 1u);
+}
+
+TEST(UbxDialect, ReadsNavPvatWithItsAttitude) {
+    const auto dialect = dialect_named("ubx");
+    const auto pvat = [](std::uint32_t itow_ms) {
+        NavPvat m;
+        m.i_tow = itow_ms, m.valid = 7, m.year = 2026, m.month = 11, m.day = 20, m.hour = 12, m.minute = 34;
+        m.second = 56, m.fix_type = 3, m.flags = 0x1D, m.lat = 473977000, m.lon = 85456000, m.height = 510000;
+        m.vel_ned = {3000, 4000, -2000}, m.angle = {2000000, 1000000, 5313000};
+        return encode_frame(m);
+    };
+    dialect->hear(pvat(itow), 1);
+    const FeedNews news = dialect->hear(pvat(itow + 1000), 2);
+    ASSERT_EQ(news.samples.size(), 2u) << news.refusal;
+    EXPECT_NEAR(to_geodetic(news.samples[0].position).height.above_ellipsoid.value(), 510, 1e-6);
+    ASSERT_TRUE(news.samples[0].attitude);
+    EXPECT_NEAR(news.samples[0].attitude->yaw().deg(), 53.13, 1e-9);
 }
 
 TEST(UbxDialect, EndsEpochsByTheirEnd) {
