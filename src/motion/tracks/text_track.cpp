@@ -15,9 +15,6 @@ namespace {
 
 constexpr double fastest_mps = 12000;  // faster than any orbit: a mistake of units
 
-// Velocities are told against the places on rows at most so far apart.
-constexpr Nanoseconds near_rows = std::chrono::seconds(20);
-
 double text_seconds(Nanoseconds span) { return to_seconds(span).value(); }
 
 bool has_height(const TextRow& row) { return row.ellipsoidal_m || row.sea_level_m; }
@@ -252,24 +249,6 @@ void TextTrack::place_rows() {
     }
 }
 
-// Upwards from the heights of the rows beside: the slope of the parabola through three of them.
-double TextTrack::climb_at(std::size_t i) const {
-    const auto is_near = [&](std::size_t a, std::size_t b) {
-        const Nanoseconds span = rows_[b].time - rows_[a].time;
-        return !rows_[b].jump && span.count() > 0 && span <= near_rows;
-    };
-    const auto slope = [&](std::size_t a, std::size_t b) {
-        return (*rows_[b].ellipsoidal_m - *rows_[a].ellipsoidal_m) / text_seconds(rows_[b].time - rows_[a].time);
-    };
-    const bool before = i > 0 && is_near(i - 1, i), after = i + 1 < rows_.size() && is_near(i, i + 1);
-    if (before && after) {
-        const double h1 = text_seconds(rows_[i].time - rows_[i - 1].time);
-        const double h2 = text_seconds(rows_[i + 1].time - rows_[i].time);
-        return (h2 * slope(i - 1, i) + h1 * slope(i, i + 1)) / (h1 + h2);
-    }
-    return before ? slope(i - 1, i) : after ? slope(i, i + 1) : 0;
-}
-
 void TextTrack::add_velocities() {
     constexpr double standing_mps = 0.1;  // below which receivers leave the course out
     for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -279,7 +258,7 @@ void TextTrack::add_velocities() {
         if (!velocity && row.speed_mps && (row.course_deg || stands)) {
             const double azimuth = Angle::degrees(row.course_deg.value_or(0)).rad();
             velocity = Velocity<Enu>(*row.speed_mps * std::sin(azimuth), *row.speed_mps * std::cos(azimuth),
-                                     row.climb_mps ? *row.climb_mps : climb_at(i));
+                                     row.climb_mps ? *row.climb_mps : climb_by_heights(track_.points, i));
         }
         if (velocity) track_.points[i].velocity = LocalFrame(to_geodetic(track_.points[i].position)).to_ecef(*velocity);
     }

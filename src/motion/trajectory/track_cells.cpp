@@ -11,6 +11,7 @@
 #include "base/core/written_place.hpp"
 #include "base/geo/geodetic.hpp"
 #include "base/time/utc_time.hpp"
+#include "motion/trajectory/track_doubts.hpp"
 
 namespace skyloop {
 
@@ -54,7 +55,7 @@ std::optional<double> number_of_cell(std::string_view text, const TrackColumn& c
     return written_degrees(text, latitude ? Coordinate::latitude : Coordinate::longitude);
 }
 
-double climb_by_heights(const std::vector<TrackRow>& rows, std::size_t row) {
+double climb_by_heights(std::span<const TrackRow> rows, std::size_t row) {
     constexpr Nanoseconds near_rows = std::chrono::seconds(30);
     const auto seconds = [&](std::size_t a, std::size_t b) { return to_seconds(rows[b].time - rows[a].time).value(); };
     const auto is_near = [&](std::size_t a, std::size_t b) {

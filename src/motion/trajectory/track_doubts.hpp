@@ -15,6 +15,10 @@ namespace skyloop {
 /// nothing.
 std::string leave_out_zero_places(Track& track, std::size_t rows);
 
+/// Upwards, m/s, from the heights of the rows beside that are at most 30 s away: the slope of the parabola through
+/// three of them, or of a line.
+double climb_by_heights(std::span<const TrackRow> rows, std::size_t row);
+
 /// The middle ratio of the speeds that rows tell to those of their places, where the vehicle moves; nothing where too
 /// few tell one.
 std::optional<double> speed_ratio(std::span<const TrackRow> rows);

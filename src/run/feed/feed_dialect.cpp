@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "detail/dialects.hpp"
-#include "detail/json_dialect.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,5 @@
-#include "detail/json_dialect.hpp"
+// Our own feed, lines of JSON: skyloop-truth/1 (FEEDS.md 3.3, docs/feeds.md).
+#include "detail/dialects.hpp"
 
 #include <fmt/format.h>
 

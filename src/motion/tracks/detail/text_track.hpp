@@ -121,7 +121,6 @@ private:
     void fill_heights();
     void place_rows();
     void add_velocities();
-    [[nodiscard]] double climb_at(std::size_t i) const;
     [[nodiscard]] std::string told_left_out(const LeftOut& out) const;
     void tell_velocities();
 

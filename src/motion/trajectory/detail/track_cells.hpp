@@ -32,7 +32,4 @@ std::optional<std::string> mistake_of_place(const Position<Ecef>& place);
 // have a letter, minutes and seconds. Nothing for any other text.
 std::optional<double> number_of_cell(std::string_view text, const TrackColumn& column, TrackQuantity quantity);
 
-// Upwards, m/s, from the heights of the rows beside: the slope of the parabola through three of them, or of a line.
-double climb_by_heights(const std::vector<TrackRow>& rows, std::size_t row);
-
 }  // namespace skyloop

@@ -13,6 +13,7 @@ std::unique_ptr<FeedDialect> make_flightgear_dialect(const FeedContext& context)
 std::unique_ptr<FeedDialect> make_flightgear_generic_dialect(const FeedContext& context);
 std::unique_ptr<FeedDialect> make_gpsd_dialect(const FeedContext& context);
 std::unique_ptr<FeedDialect> make_jsbsim_dialect(const FeedContext& context);
+std::unique_ptr<FeedDialect> make_json_dialect(const FeedContext& context);  // skyloop-truth/1
 std::unique_ptr<FeedDialect> make_mavlink_dialect(const FeedContext& context);
 std::unique_ptr<FeedDialect> make_nmea_dialect(const FeedContext& context);
 std::unique_ptr<FeedDialect> make_px4_dialect(const FeedContext& context);
