@@ -99,7 +99,9 @@ int make_scenario(const ScenarioFromOptions& options) {
 Action add_scenario_from_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("scenario-from", "Turn a receiver's log into a scenario that is like it");
     auto options = std::make_shared<ScenarioFromOptions>();
-    command->add_option("LOG", options->log, "UBX, SBF, NMEA, PX4 ULog or ArduPilot DataFlash; packed (.gz, .zip, …) or not")
+    command
+        ->add_option("LOG", options->log,
+                     "UBX, SBF, NMEA, PX4 ULog, ArduPilot DataFlash or RTKLIB .pos; packed (.gz, .zip, …) or not")
         ->required();
     command->add_option("--out", options->out, "Folder for scenario.toml and track.csv; default: this one");
     command->add_option("--gps", options->receiver, "Which receiver of an autopilot's log, from 0")

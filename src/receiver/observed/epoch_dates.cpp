@@ -71,8 +71,10 @@ bool date_by_weeks(std::vector<ObservedEpoch>& epochs) {
     // The nearest to the last one before it.
     const Nanoseconds ahead = dated->time - std::prev(dated)->time + whole_week / 2;
     const Nanoseconds weeks = ahead - ahead % whole_week;
-    for (auto epoch = epochs.begin(); epoch != dated; ++epoch)
-        epoch->time += weeks, epoch->dated = true;
+    for (auto epoch = epochs.begin(); epoch != dated; ++epoch) {
+        epoch->time += weeks;
+        epoch->dated = epoch->place && epoch->type != FixType::none;
+    }
     return true;
 }
 

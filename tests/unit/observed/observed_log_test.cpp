@@ -102,6 +102,25 @@ TEST(UbxLog, CountsDamageAndKeepsTheRest) {
     EXPECT_THAT(log.notes, testing::Contains(HasSubstr("wrong checksum")));
 }
 
+// From its start on a receiver counts the time of week from 0, until it knows better.
+TEST(UbxLog, ColdStartsBeginWithTheWeek) {
+    Bytes bytes;
+    for (unsigned second = 0; second < 5; ++second) {
+        NavPvt cold = pvt_at(second, 0, 0);
+        cold.i_tow = 1000 * second, cold.valid = 0;
+        append(bytes, encode_frame(cold));
+    }
+    append(bytes, encode_frame(pvt_at(7, 3, 1)));
+    append(bytes, encode_frame(pvt_at(8, 3, 1)));
+    const ObservedLog log = read_whole(bytes);
+    ASSERT_EQ(log.epochs.size(), 2u);
+    EXPECT_EQ(log.epochs[0].time, log_noon + std::chrono::seconds(7));
+    EXPECT_THAT(log.notes, testing::Contains(HasSubstr("5 epochs before the receiver knew the week were left out")));
+    const auto fixes = read_observed(bytes, "x.log", {nullptr, 0, ObservedUse::fixes});
+    ASSERT_TRUE(fixes);
+    EXPECT_EQ(fixes->epochs.size(), 7u) << "each says that it has no fix";
+}
+
 TEST(UbxLog, OldReceiversTellInSeveralMessages) {
     NavSol sol;
     sol.i_tow = 1000, sol.week = 1500, sol.gps_fix = 3, sol.flags = 0x0D, sol.num_sv = 7;

@@ -37,7 +37,8 @@ void add_note(ObservedLog& log, std::size_t count, const std::string& what);
 /// any the first day is 1980-01-06. @return a date is told
 bool date_by_days(std::vector<NmeaEpoch>& epochs);
 
-/// Dates the epochs before the first one whose week is told by that. @return a week is told
+/// Counts the weeks of the epochs before the first one whose week is told from that. Those with a fix are dated so:
+/// without one a receiver may count the time of week from its start. @return a week is told
 bool date_by_weeks(std::vector<ObservedEpoch>& epochs);
 
 /// Epochs ascending in time, each time once. Left out: a single epoch whose time ran ahead, those that repeat a time or
