@@ -13,15 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr NumberRange device_speeds{1, 100'000'000};
-constexpr std::array<Word<DeviceKind>, 7> device_kind_words{{{"autopilot", DeviceKind::autopilot},
-                                                             {"receiver", DeviceKind::receiver},
-                                                             {"bridge", DeviceKind::bridge},
-                                                             {"relay", DeviceKind::relay},
-                                                             {"gpio", DeviceKind::gpio},
-                                                             {"hub", DeviceKind::hub},
-                                                             {"bootloader", DeviceKind::bootloader}}};
-constexpr std::array<Word<DeviceTransport>, 3> device_transport_words{
-    {{"serial", DeviceTransport::serial}, {"usb", DeviceTransport::usb}, {"hid", DeviceTransport::hid}}};
 
 // Ids are written into udev rules and compared as numbers: four hexadecimal digits each.
 void check_ids(TableReader& device, std::string_view key, const std::vector<std::string>& texts,
@@ -65,7 +56,15 @@ DeviceProfile read_device(TableReader& device, const std::vector<std::string>& b
     device.text("name", profile.name);
     device.text("description", profile.description);
     if (!device.has("kind")) device.mistake_here("has no kind; expected a key 'kind'");
-    device.word("kind", device_kind_words, profile.kind);
+    device.word("kind",
+                {{"autopilot", DeviceKind::autopilot},
+                 {"receiver", DeviceKind::receiver},
+                 {"bridge", DeviceKind::bridge},
+                 {"relay", DeviceKind::relay},
+                 {"gpio", DeviceKind::gpio},
+                 {"hub", DeviceKind::hub},
+                 {"bootloader", DeviceKind::bootloader}},
+                profile.kind);
     device.text_or_texts("usb", ids);
     if (ids.empty()) device.mistake_here("has no ids; expected a key 'usb' such as \"1546:01a8\"");
     device.text_or_texts("product", profile.products);
@@ -73,7 +72,9 @@ DeviceProfile read_device(TableReader& device, const std::vector<std::string>& b
     device.text_or_texts("bootloader_usb", bootloader_ids);
     device.text_or_texts("bootloader_product", profile.bootloader_products);
     device.text("good_for", profile.good_for);
-    device.word("transport", device_transport_words, profile.transport);
+    device.word("transport",
+                {{"serial", DeviceTransport::serial}, {"usb", DeviceTransport::usb}, {"hid", DeviceTransport::hid}},
+                profile.transport);
     device.integer("baud", profile.baud, device_speeds);
     device.integer("max_baud", profile.max_baud, device_speeds);
     if (profile.max_baud != 0 && profile.baud > profile.max_baud)
@@ -128,7 +129,7 @@ Result<std::vector<DeviceProfile>> read_devices(std::string_view toml_text, std:
         top.text("description", description);
         top.text_or_texts("bootloader_product", bootloader_products);
         if (!top.has("device")) top.mistake_here("has no device; expected tables headed [[device]]");
-        top.tables("device", [&](TableReader& table) {
+        top.tables("device", {}, [&](TableReader& table) {
             const DeviceProfile device = read_device(table, bootloader_products);
             for (const DeviceProfile& earlier : devices)
                 if (const std::string wrong = clash(earlier, device); !wrong.empty()) table.mistake_here(wrong);

@@ -18,21 +18,6 @@ using firmware::PortId;
 using firmware::SpeedChangeAnswer;
 using firmware::ValueConfigSupport;
 
-constexpr std::array<Word<Personality>, 8> board_personalities{{{"mute", Personality::mute},
-                                                                {"ublox", Personality::ublox},
-                                                                {"mtk", Personality::mtk},
-                                                                {"airoha", Personality::airoha},
-                                                                {"msp", Personality::msp},
-                                                                {"msp-v1", Personality::msp_v1},
-                                                                {"mavlink", Personality::mavlink},
-                                                                {"sbf", Personality::sbf}}};
-constexpr std::array<Word<SecondBand>, 2> second_band_words{{{"l2", SecondBand::l2}, {"l5", SecondBand::l5}}};
-constexpr std::array<Word<ValueConfigSupport>, 3> value_config_words{{{"full", ValueConfigSupport::full},
-                                                                      {"refuse", ValueConfigSupport::refuse},
-                                                                      {"silence", ValueConfigSupport::silence}}};
-constexpr std::array<Word<SpeedChangeAnswer>, 3> speed_change_words{{{"at_new_speed", SpeedChangeAnswer::at_new_speed},
-                                                                     {"at_old_speed", SpeedChangeAnswer::at_old_speed},
-                                                                     {"lost", SpeedChangeAnswer::lost}}};
 constexpr NumberRange speed_range{firmware::slowest_baud, firmware::fastest_baud};
 
 void read_board_identity(TableReader& table, firmware::Identity& identity) {
@@ -93,16 +78,22 @@ void read_board_power(TableReader& table, firmware::PowerAbility& power) {
 }
 
 void read_board_quirks(TableReader& table, firmware::Quirks& quirks) {
-    table.word("value_config", value_config_words, quirks.value_config);
+    table.word("value_config",
+               {{"full", ValueConfigSupport::full},
+                {"refuse", ValueConfigSupport::refuse},
+                {"silence", ValueConfigSupport::silence}},
+               quirks.value_config);
     table.boolean("single_key_valget", quirks.single_key_valget);
     table.boolean("hardware_reset_clears_battery", quirks.hardware_reset_clears_battery);
-    table.word("speed_change_answer", speed_change_words, quirks.speed_change);
+    table.word("speed_change_answer",
+               {{"at_new_speed", SpeedChangeAnswer::at_new_speed},
+                {"at_old_speed", SpeedChangeAnswer::at_old_speed},
+                {"lost", SpeedChangeAnswer::lost}},
+               quirks.speed_change);
     table.boolean("answers_unknown_nmea", quirks.answers_unknown_nmea);
     table.boolean("interference_monitor", quirks.default_interference_monitor);
     table.boolean("voltage_control", quirks.voltage_control);
-    int leap_seconds = 0;
-    table.integer("leap_seconds", leap_seconds, {0, 60});
-    if (table.has("leap_seconds")) quirks.leap_seconds = leap_seconds;
+    table.integer("leap_seconds", quirks.leap_seconds, {0, 60});
 }
 
 void read_board_uart(TableReader& uart, BoardProfile& board) {
@@ -150,7 +141,7 @@ void read_board_usb(TableReader& usb, BoardProfile& board) {
 void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     read_constellation_list(navigation, "constellations", board.constellations);
     navigation.boolean("dual_frequency", board.dual_frequency);
-    navigation.word("second_band", second_band_words, board.second_band);
+    navigation.word("second_band", {{"l2", SecondBand::l2}, {"l5", SecondBand::l5}}, board.second_band);
     navigation.boolean("bands_together", board.bands_together);
     read_constellation_list(navigation, "first_band_alone", board.first_band_alone);
     navigation.integer("most_systems", board.most_systems, {1, 4});
@@ -162,18 +153,16 @@ void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     navigation.number("all_satellites_rate_hz", board.all_satellites_rate_hz, {0, 100});
     navigation.integer("fast_satellites", board.fast_satellites, {4, 64});
     navigation.integer("least_measurement_period_ms", board.least_measurement_period_ms, {1, 65535});
-    double mask = board.elevation_mask.deg();
-    navigation.number("elevation_mask_deg", mask, {0, 90});
-    board.elevation_mask = Angle::degrees(mask);
+    navigation.degrees("elevation_mask_deg", board.elevation_mask, {0, 90});
     board.dynamic_limits = board.personality == Personality::ublox;
     navigation.boolean("dynamic_limits", board.dynamic_limits);
-    navigation.word("export_limits", export_limit_words, board.export_limits);
+    read_export_limits(navigation, board.export_limits);
     navigation.quantity("solution_latency_s", board.solution_latency, {0, 2});
 }
 
 // Blocks and groups, in the maker's spelling.
 void read_board_sbf(TableReader& sbf, BoardProfile& board) {
-    sbf.texts("blocks", board.sbf_blocks, 0);
+    sbf.texts("blocks", board.sbf_blocks, {}, 0);
     for (std::string& name : board.sbf_blocks) {
         auto known = firmware::known_word(firmware::WordKind::block, name);
         if (!known) known = firmware::known_word(firmware::WordKind::block_group, name);
@@ -214,7 +203,16 @@ std::optional<Bytes> bytes_of_hex(std::string_view text) {
 void read_board_keys(TableReader& top, BoardProfile& board) {
     board.constellations = {Constellation::gps};
     top.text("description", board.description);
-    top.word("personality", board_personalities, board.personality);
+    top.word("personality",
+             {{"mute", Personality::mute},
+              {"ublox", Personality::ublox},
+              {"mtk", Personality::mtk},
+              {"airoha", Personality::airoha},
+              {"msp", Personality::msp},
+              {"msp-v1", Personality::msp_v1},
+              {"mavlink", Personality::mavlink},
+              {"sbf", Personality::sbf}},
+             board.personality);
     top.table("identity", [&](TableReader& t) { read_board_identity(t, board.identity); });
     top.table("timing", [&](TableReader& t) { read_board_timing(t, board.timing); });
     top.table("corrections", [&](TableReader& t) { read_board_corrections(t, board.corrections); });

@@ -5,13 +5,6 @@
 namespace skyloop {
 namespace {
 
-constexpr std::array<Word<NmeaVersion>, 5> board_nmea_versions{{{"2.1", NmeaVersion::v2_1},
-                                                                {"2.3", NmeaVersion::v2_3},
-                                                                {"4.0", NmeaVersion::v4_0},
-                                                                {"4.10", NmeaVersion::v4_10},
-                                                                {"4.11", NmeaVersion::v4_11}}};
-constexpr std::array<Word<NmeaNumbering>, 2> board_numberings{
-    {{"strict", NmeaNumbering::strict}, {"extended", NmeaNumbering::extended}}};
 constexpr std::array<std::string_view, 6> board_talkers{"GP", "GL", "GA", "GB", "GQ", "GN"};
 constexpr std::array<std::string_view, 2> beidou_talkers{"GB", "BD"}, qzss_talkers{"GQ", "QZ"};
 constexpr std::array<std::string_view, 2> station_fields{"", "0000"};
@@ -47,8 +40,15 @@ void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
 }  // namespace
 
 void read_board_nmea(TableReader& nmea, firmware::BoardProfile& board) {
-    nmea.word("version", board_nmea_versions, board.nmea_version);
-    nmea.word("satellite_numbering", board_numberings, board.satellite_numbering);
+    nmea.word("version",
+              {{"2.1", NmeaVersion::v2_1},
+               {"2.3", NmeaVersion::v2_3},
+               {"4.0", NmeaVersion::v4_0},
+               {"4.10", NmeaVersion::v4_10},
+               {"4.11", NmeaVersion::v4_11}},
+              board.nmea_version);
+    nmea.word("satellite_numbering", {{"strict", NmeaNumbering::strict}, {"extended", NmeaNumbering::extended}},
+              board.satellite_numbering);
     nmea.text("main_talker", board.main_talker);
     if (!board.main_talker.empty()) nmea.choice("main_talker", board_talkers);
     nmea.integer("coordinate_decimals", board.coordinate_decimals, {3, 7});

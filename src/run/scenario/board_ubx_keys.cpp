@@ -17,11 +17,6 @@ using firmware::BoardProfile;
 using firmware::ConfigKey;
 using firmware::LegacyAnswer;
 
-constexpr std::array<Word<LegacyAnswer>, 4> legacy_answer_words{{{"apply", LegacyAnswer::apply},
-                                                                 {"ignore", LegacyAnswer::ignore},
-                                                                 {"refuse", LegacyAnswer::refuse},
-                                                                 {"silence", LegacyAnswer::silence}}};
-
 struct MessageNames {
     std::vector<UbxMessageId> ids;
     std::vector<std::string_view> names;
@@ -36,7 +31,8 @@ struct MessageNames {
 
 std::vector<UbxMessageId> read_messages(TableReader& ubx, std::string_view key, const MessageNames& known) {
     std::vector<UbxMessageId> messages;
-    const auto found = ubx.choices(key, known.names, "a list of messages by name, such as NAV-PVT, GGA or RTCM-1005");
+    const auto found =
+        ubx.choices(key, known.names, {}, "a list of messages by name, such as NAV-PVT, GGA or RTCM-1005");
     if (found)
         for (const std::size_t index : *found)
             messages.push_back(known.ids[index]);
@@ -46,7 +42,12 @@ std::vector<UbxMessageId> read_messages(TableReader& ubx, std::string_view key, 
 void read_legacy(TableReader& legacy, BoardProfile& board) {
     for (const firmware::NamedMessage& message : firmware::legacy_messages()) {
         LegacyAnswer answer = LegacyAnswer::apply;
-        legacy.word(message.name, legacy_answer_words, answer);
+        legacy.word(message.name,
+                    {{"apply", LegacyAnswer::apply},
+                     {"ignore", LegacyAnswer::ignore},
+                     {"refuse", LegacyAnswer::refuse},
+                     {"silence", LegacyAnswer::silence}},
+                    answer);
         if (legacy.has(message.name)) board.legacy[message.id] = answer;
     }
 }

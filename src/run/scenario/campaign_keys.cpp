@@ -14,10 +14,10 @@ constexpr double longest_vehicle_s = 1e6;
 constexpr double most_exact_whole = 9007199254740992;  // 2^53
 
 void read_seed_list(TableReader& table, CampaignSettings& campaign) {
-    const auto seeds = table.whole_numbers("seed_list", NumberRange::not_negative());
-    table.note_not_both("seeds", "seed_list");
+    const auto seeds = table.whole_numbers("seed_list", NumberRange::not_negative(),
+                                           {"the seeds themselves, instead of their number", "none"});
+    table.not_both("seeds", "seed_list");
     if (!seeds) return;
-    if (table.has("seeds")) table.mistake("seed_list", "stands beside seeds; expected one of them");
     std::set<std::int64_t> seen;
     for (const std::int64_t seed : *seeds) {
         if (!seen.insert(seed).second)
@@ -29,7 +29,7 @@ void read_seed_list(TableReader& table, CampaignSettings& campaign) {
 }
 
 void read_value_list(TableReader& table, CampaignSpread& spread) {
-    const toml::node* node = table.node("values", KeyType::values);
+    const toml::node* node = table.node("values", KeyType::values, {"what it takes", "none"});
     if (node == nullptr) return;
     const toml::array* list = node->as_array();
     if (list == nullptr || list->empty()) return table.mistake("values", "is no list of values; expected at least one");
@@ -46,8 +46,8 @@ void read_value_list(TableReader& table, CampaignSpread& spread) {
 }
 
 // Two numbers that ascend.
-std::optional<std::pair<double, double>> read_ends(TableReader& table, std::string_view key) {
-    const auto ends = table.numbers(key, 2);
+std::optional<std::pair<double, double>> read_ends(TableReader& table, std::string_view key, std::string_view meaning) {
+    const auto ends = table.numbers(key, 2, {meaning, "none"});
     if (!ends) return std::nullopt;
     if ((*ends)[0] < (*ends)[1] && std::isfinite((*ends)[1] - (*ends)[0])) return std::pair((*ends)[0], (*ends)[1]);
     table.mistake(key, fmt::format("is [{}, {}]; expected the least and the greatest", (*ends)[0], (*ends)[1]));
@@ -55,7 +55,7 @@ std::optional<std::pair<double, double>> read_ends(TableReader& table, std::stri
 }
 
 void read_log_uniform(TableReader& table, CampaignSpread& spread) {
-    const auto ends = read_ends(table, "log_uniform");
+    const auto ends = read_ends(table, "log_uniform", "drawn so that its logarithm is uniform between those of these");
     if (!ends) return;
     if (ends->first <= 0)
         return table.mistake("log_uniform", fmt::format("begins at {}; expected ends above 0", ends->first));
@@ -63,7 +63,7 @@ void read_log_uniform(TableReader& table, CampaignSpread& spread) {
 }
 
 void read_normal(TableReader& table, CampaignSpread& spread) {
-    const auto numbers = table.numbers("normal", 2);
+    const auto numbers = table.numbers("normal", 2, {"drawn with this mean and standard deviation", "none"});
     if (!numbers) return;
     if ((*numbers)[1] <= 0)
         return table.mistake("normal",
@@ -72,7 +72,7 @@ void read_normal(TableReader& table, CampaignSpread& spread) {
 }
 
 void read_whole(TableReader& table, CampaignSpread& spread) {
-    const auto ends = read_ends(table, "whole");
+    const auto ends = read_ends(table, "whole", "whole numbers from the first to the second");
     if (!ends) return;
     for (const double end : {ends->first, ends->second})
         if (end != std::floor(end) || std::abs(end) > most_exact_whole)
@@ -82,7 +82,8 @@ void read_whole(TableReader& table, CampaignSpread& spread) {
 
 void read_spread(TableReader& table, CampaignSpread& spread) {
     read_value_list(table, spread);
-    if (const auto ends = read_ends(table, "uniform")) spread = UniformSpread{ends->first, ends->second};
+    if (const auto ends = read_ends(table, "uniform", "drawn between these"))
+        spread = UniformSpread{ends->first, ends->second};
     read_log_uniform(table, spread);
     read_normal(table, spread);
     read_whole(table, spread);
@@ -111,7 +112,7 @@ void check_spread_of_grid(TableReader& table, const CampaignParameter& parameter
 void read_parameter(TableReader& table, CampaignSettings& campaign) {
     CampaignParameter parameter;
     table.needs_one_of({"key"}, "names no key; expected key = \"run.duration_s\"");
-    table.text("key", parameter.key);
+    table.text("key", parameter.key, {"with dots: `model.name`, `fault.NAME.for_s`, `receiver.0.rate_hz`", "none"});
     read_spread(table, parameter.spread);
     if (campaign.design == CampaignDesign::grid && !table.recording()) check_spread_of_grid(table, parameter);
     const auto same = [&](const CampaignParameter& other) { return other.key == parameter.key; };
@@ -127,14 +128,13 @@ void read_parameter(TableReader& table, CampaignSettings& campaign) {
 void read_vehicle(TableReader& table, CampaignSettings& campaign) {
     CampaignVehicle vehicle;
     table.needs_one_of({"command"}, "names no command; expected command = \"./sitl {pty}\"");
-    table.text("command", vehicle.command);
+    table.text("command", vehicle.command, {"for /bin/sh; `{pty}`, `{seed}` and `{number}` are replaced", "none"});
     if (table.has("command") && vehicle.command.find_first_not_of(" \t\r\n") == std::string::npos && !table.recording())
         table.mistake("command", "is empty; expected a program, such as \"./sitl {pty}\"");
-    table.texts("files", vehicle.files);
-    if (table.has("timeout_s")) {
-        vehicle.timeout = Seconds(1);
-        table.quantity("timeout_s", vehicle.timeout, {0.1, longest_vehicle_s});
-    }
+    table.texts("files", vehicle.files,
+                {"what the program loads: its runs are done anew when one of these has changed", "none"});
+    table.quantity("timeout_s", vehicle.timeout, {0.1, longest_vehicle_s},
+                   {"how long it may run", "length of the run and 10"});
     campaign.vehicle = std::move(vehicle);
 }
 
@@ -150,29 +150,27 @@ void check_design(TableReader& table, const CampaignSettings& campaign) {
 }  // namespace
 
 void read_campaign(TableReader& top, std::optional<CampaignSettings>& campaign) {
-    static constexpr std::array<Word<CampaignDesign>, 3> designs{
-        {{"grid", CampaignDesign::grid},
-         {"random", CampaignDesign::random},
-         {"latin_hypercube", CampaignDesign::latin_hypercube}}};
-    top.table("campaign", [&](TableReader& table) {
+    top.table("campaign", {"many runs of the scenario (docs/campaigns.md)", "none"}, [&](TableReader& table) {
         CampaignSettings& settings = campaign.emplace();
-        table.text("name", settings.name);
-        if (table.has("seeds")) {
-            settings.seed_count = 1;
-            table.integer("seeds", settings.seed_count, {1, most_runs});
-        }
-        table.integer("first_seed", settings.first_seed, {0, most_exact_whole});
+        table.text("name", settings.name, {"what reports call it", "the file's"});
+        table.integer(
+            "seeds", settings.seed_count, {1, most_runs},
+            {"how many seeds each set of parameters is run with", "1; of designs that draw, a seed for each sample"});
+        table.integer("first_seed", settings.first_seed, {0, most_exact_whole}, "the first of them");
         read_seed_list(table, settings);
-        table.word("design", designs, settings.design);
-        if (table.has("samples")) {
-            settings.samples = 1;
-            table.integer("samples", settings.samples, {1, most_runs});
-        }
-        table.integer("design_seed", settings.design_seed, NumberRange::not_negative());
-        table.texts("metrics", settings.metrics);
+        table.word("design",
+                   {{"grid", CampaignDesign::grid},
+                    {"random", CampaignDesign::random},
+                    {"latin_hypercube", CampaignDesign::latin_hypercube}},
+                   settings.design, "each value with each, or samples that are drawn");
+        table.integer("samples", settings.samples, {1, most_runs}, {"how many sets of parameters are drawn", "none"});
+        table.integer("design_seed", settings.design_seed, NumberRange::not_negative(), "what they are drawn with");
+        table.texts("metrics", settings.metrics, {"which figures of a run are kept", "all"});
         settings.metrics_told_at = table.told_at("metrics");
-        table.tables("parameter", [&](TableReader& entry) { read_parameter(entry, settings); });
-        table.table("vehicle", [&](TableReader& entry) { read_vehicle(entry, settings); });
+        table.tables("parameter", "a key that differs from run to run",
+                     [&](TableReader& entry) { read_parameter(entry, settings); });
+        table.table("vehicle", "a program that is tested, in real time",
+                    [&](TableReader& entry) { read_vehicle(entry, settings); });
         check_design(table, settings);
     });
 }

@@ -17,7 +17,7 @@ constexpr std::string_view probe_keys[] = {"expect_exit", "json", "at_s", "withi
 void read_condition(TableReader& table, Probe& probe) {
     if (!table.has("json")) return;
     std::string text = "a == 0";  // stays where the value is no text, which has been told
-    table.text("json", text);
+    table.text("json", text, {"one JSON line that the command prints must fulfil this: \"tpv.mode >= 3\"", "none"});
     auto condition = parse_json_condition(text);
     if (condition)
         probe.condition = std::move(*condition);
@@ -27,23 +27,18 @@ void read_condition(TableReader& table, Probe& probe) {
 
 void read_probe(TableReader& table, Expectation& expectation) {
     Probe& probe = expectation.probe.emplace();
-    table.text_or_texts("command", probe.command);
+    table.text_or_texts("command", probe.command, {"a program and its arguments, or a text for /bin/sh", "none"});
     if (probe.command.empty()) probe.command = {""};  // no list of texts, which has been told, or an empty one
     if (probe.command.front().empty())
         table.mistake("command", "names no program; expected a program and its arguments, or a text for /bin/sh");
-    if (table.has("expect_exit")) {
-        int code = 0;
-        table.integer("expect_exit", code, {0, 255});
-        probe.expect_exit = code;
-    }
+    table.integer("expect_exit", probe.expect_exit, {0, 255},
+                  {"exit code that the command should have", "0, or any beside json"});
     read_condition(table, probe);
-    table.quantity("at_s", probe.at, {0, longest_probe_s});
-    if (table.has("within_s")) {
-        Seconds within(0);
-        table.quantity("within_s", within, {0, longest_probe_s});
-        probe.within = within;
-    }
-    table.quantity("timeout_s", probe.timeout, {0.01, longest_probe_s});
+    table.quantity("at_s", probe.at, {0, longest_probe_s}, "when the command is started, after the start of the run");
+    table.quantity("within_s", probe.within, {0, longest_probe_s},
+                   {"it is started anew until it succeeds, for so long", "once"});
+    table.quantity("timeout_s", probe.timeout, {0.01, longest_probe_s},
+                   "of each start of the command; then it is killed");
     table.note_not_both("command", "receiver");
     if (!expectation.receiver.empty())
         table.mistake("receiver", "is of a sentence (what); a command asks whom it likes");
@@ -59,7 +54,7 @@ void read_sentence(TableReader& table, Expectation& expectation) {
     table.needs_one_of({"what", "command"}, "says nothing; expected what = \"…\" or command = …");
     if (!table.has("what") && !table.recording()) return;
     expectation.what = "fix";  // stays where the value is no text, which has been told
-    table.text("what", expectation.what);
+    table.text("what", expectation.what, {"a sentence: \"fix within 30 s of the end of outage\"", "none"});
     auto sentence = parse_expectation(expectation.what);
     if (sentence) {
         if (const auto mistake = impossible_subject(sentence->subject)) table.mistake("what", *mistake);
@@ -76,15 +71,12 @@ void read_sentence(TableReader& table, Expectation& expectation) {
 }
 
 void read_expectation(TableReader& table, Expectation& expectation) {
-    table.text("name", expectation.name);
-    table.text("receiver", expectation.receiver);
+    table.text("name", expectation.name, {"what verdicts call it", "its sentence or its command"});
+    table.text("receiver", expectation.receiver, {"name of the receiver that the sentence is about", "each"});
     if (!table.has("command")) return read_sentence(table, expectation);
     read_probe(table, expectation);
-    table.note_not_both("what", "command");
-    if (table.has("what")) {
-        table.has_been_read("what");
-        table.mistake("what", "stands beside command; expected one of them");
-    }
+    table.not_both("command", "what");
+    table.has_been_read("what");
 }
 
 // What the rest of a scenario is called.
@@ -116,7 +108,7 @@ void check_names(TableReader& table, const Expectation& expectation, const Named
 
 void read_expectations(TableReader& top, Scenario& scenario) {
     const NamedThings named = named_things(scenario);
-    top.tables("expect", [&](TableReader& table) {
+    top.tables("expect", "what the run is judged by (docs/failsafe.md)", [&](TableReader& table) {
         Expectation& expectation = scenario.expectations.emplace_back();
         read_expectation(table, expectation);
         check_names(table, expectation, named);

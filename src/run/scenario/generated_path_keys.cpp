@@ -10,14 +10,12 @@ namespace skyloop {
 namespace {
 
 void read_seed(TableReader& table, GeneratedPath& path) {
-    if (!table.has("seed")) return;
-    std::uint64_t seed = 1;
-    table.integer("seed", seed, {0, 9e18});
-    path.seed = seed;
+    table.integer("seed", path.seed, {0, 9e18}, {"of the path's dice", "the run's"});
 }
 
-bool has_any(TableReader& table, std::initializer_list<std::string_view> keys) {
-    return std::any_of(keys.begin(), keys.end(), [&](std::string_view key) { return table.has(key); });
+void read_beginning_and_end(TableReader& table, GeneratedPath& path) {
+    table.boolean("loop", path.loop, "the path repeats when it has ended");
+    table.quantity("start_delay_s", path.start_delay, {0, 1e7}, "the vehicle stands at its beginning for so long");
 }
 
 // The same corners for a vehicle; nothing, and a mistake, when one is too far away.
@@ -49,17 +47,15 @@ private:
 
 void StepReader::read(TableReader& table) {
     const auto names = path_shape_names();
-    const auto kind = table.choice("kind", names);
+    const auto kind = table.choice("kind", names, "the shape of the way");
     table.needs_one_of({"kind"}, fmt::format("has no kind; expected kind = \"{}\"", fmt::join(names, "\", \"")));
     const Angle heading = read_heading(table);
     VehicleLimits vehicle = path_.vehicle;
     GeneratedPath::Step step;
     const auto wish = kind ? read_path_shape(*kind, {table, places_, vehicle, heading}) : std::nullopt;
     constexpr std::string_view lasts_by_itself = "drive";
-    if (kind && names[*kind] != lasts_by_itself && table.has("duration_s")) {
-        step.seconds = 60;
-        table.number("duration_s", step.seconds, {1e-2, 1e7});
-    }
+    if (kind && names[*kind] != lasts_by_itself)
+        table.number("duration_s", step.seconds, {1e-2, 1e7}, {"when the next step takes over", "until its end"});
     whole_ = whole_ && wish;
     if (wish) step.wish = *wish;
     step.vehicle = vehicle;
@@ -83,8 +79,7 @@ void read_generated(TableReader& table, PlaceReader& places, std::size_t kind, T
     GeneratedPath path;
     const Angle heading = read_heading(table);
     auto wish = read_path_shape(kind, {table, plane, path.vehicle, heading});
-    table.boolean("loop", path.loop);
-    table.quantity("start_delay_s", path.start_delay, {0, 1e7});
+    read_beginning_and_end(table, path);
     if (has_dice(kind)) read_seed(table, path);
     if (!wish || table.recording()) return;
     path.origin = plane.plane()->origin();
@@ -96,19 +91,15 @@ void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings&
     WaypointSettings way;
     way.heading = read_heading(table);
     GeneratedPath path;
-    const bool has_vehicle = has_any(
-        table, {"vehicle", "speed_mps", "acceleration_mps2", "jerk_mps3", "lateral_mps2", "bank_deg", "turn_time_s",
-                "turn_radius_m", "corner_m", "slowest_mps", "climb_mps", "sink_mps", "steepest_deg"});
-    read_speed_and_vehicle(table, path.vehicle);
-    table.boolean("loop", path.loop);
-    table.quantity("start_delay_s", path.start_delay, {0, 1e7});
+    const bool has_vehicle = table.reads_any([&] { read_speed_and_vehicle(table, path.vehicle); });
+    read_beginning_and_end(table, path);
     const bool moves_as_a_vehicle = has_vehicle || path.loop || path.start_delay > Seconds(0);
     bool whole = true;
     read_waypoint_tables(table, [&](TableReader& row) {
         Waypoint corner;
         if (moves_as_a_vehicle) corner.speed = MetresPerSecond(path.vehicle.along.speed);
         if (!way.corners.empty()) corner.speed = way.corners.back().speed;
-        const auto at = places.read(row, "at");
+        const auto at = places.read_needed(row, "at", {"place", "none"});
         whole = whole && at;
         if (at) corner.place = *at;
         read_waypoint_motion(row, corner);
@@ -128,12 +119,11 @@ void read_sequence(TableReader& table, PlaceReader& places, TrajectorySettings& 
     GeneratedPath path;
     const Angle heading = read_heading(table);
     read_speed_and_vehicle(table, path.vehicle);
-    table.boolean("loop", path.loop);
-    table.quantity("start_delay_s", path.start_delay, {0, 1e7});
+    read_beginning_and_end(table, path);
     read_seed(table, path);
     StepReader steps(plane, path);
     table.tables(
-        "step", [&](TableReader& row) { steps.read(row); }, 1);
+        "step", "paths one after the other, joined smoothly", [&](TableReader& row) { steps.read(row); }, 1);
     if (path.steps.empty())
         table.mistake_here("kind \"sequence\" has no steps; expected one or more [[trajectory.step]]");
     if (!steps.whole() || path.steps.empty() || table.recording()) return;

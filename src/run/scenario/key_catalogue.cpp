@@ -3,31 +3,11 @@
 #include <algorithm>
 #include <array>
 
-#include "detail/key_meanings.hpp"
 #include "detail/key_recorder.hpp"
 #include "detail/scenario_keys.hpp"
 
 namespace skyloop {
 namespace {
-
-void record_scenario(KeyRecorder& recorder) {
-    static const toml::table nothing;
-    MistakeList mistakes("keys");  // of readers that find nothing; nobody is told
-    Scenario scenario;
-    recorder.enter({}, false);
-    TableReader top(nothing, {}, mistakes, &recorder);
-    read_top_keys(top, scenario, {});
-}
-
-void add_meanings(std::vector<KeyTable>& tables) {
-    for (KeyTable& table : tables)
-        for (KeyEntry& key : table.keys) {
-            const KeyMeaning* meaning = find_key_meaning(table.path, key.name);
-            if (meaning == nullptr) continue;
-            key.meaning = meaning->meaning;
-            key.standard_words = meaning->standard;
-        }
-}
 
 struct UnitSuffix {
     std::string_view suffix, unit;
@@ -83,34 +63,19 @@ constexpr std::array<UnitSuffix, 44> unit_suffixes{{{"_m_per_sqrt_h", "m/√h"},
 const std::vector<KeyTable>& scenario_key_tables() {
     static const std::vector<KeyTable> tables = [] {
         KeyRecorder recorder;
+        const toml::table nothing;
+        MistakeList mistakes("keys");  // of readers that find nothing; nobody sees them
         for (const bool given : {false, true}) {
-            recorder.begin(given, std::nullopt);
-            record_scenario(recorder);
+            recorder.begin(given);
+            Scenario scenario;
+            recorder.record({}, false, [&] {
+                TableReader top(nothing, {}, mistakes, &recorder);
+                read_top_keys(top, scenario, {});
+            });
         }
-        // There are more of them when a table is found that only one kind has.
-        for (std::size_t turn = 0; turn < recorder.turns(); ++turn)
-            for (const bool given : {false, true}) {
-                recorder.begin(given, turn);
-                record_scenario(recorder);
-            }
-        std::vector<KeyTable> noted = recorder.tables();
-        add_meanings(noted);
-        return noted;
+        return recorder.tables();
     }();
     return tables;
-}
-
-std::vector<std::string> words_without_key() {
-    std::vector<std::string> lost;
-    for (const auto meanings : {run_key_meanings(), model_key_meanings(), modern_key_meanings()})
-        for (const KeyMeaning& meaning : meanings) {
-            bool used = false;
-            for (const KeyTable& table : scenario_key_tables())
-                for (const KeyEntry& key : table.keys)
-                    used |= find_key_meaning(table.path, key.name) == &meaning;
-            if (!used) lost.push_back(std::string(meaning.table) + "." + std::string(meaning.key));
-        }
-    return lost;
 }
 
 std::string_view key_unit(std::string_view key) {

@@ -72,9 +72,6 @@ struct KeyTable {
 /// All tables, each before those in it. Made once, by letting the readers read nothing.
 const std::vector<KeyTable>& scenario_key_tables();
 
-/// What is told of keys that no reader asks for, "run.sede"; none unless a key has gone and its words have stayed.
-std::vector<std::string> words_without_key();
-
 /// What the suffix of a key says of its unit: "m/s" of "speed_mps"; empty when it has none.
 std::string_view key_unit(std::string_view key);
 

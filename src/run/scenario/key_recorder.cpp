@@ -34,86 +34,64 @@ bool KeyEntry::same_as(const KeyEntry& other) const {
     return parts(*this) == parts(other);
 }
 
-void KeyRecorder::begin(bool given, std::optional<std::size_t> turn) {
-    given_ = given;
-    turn_ = turn;
-}
-
-std::size_t KeyRecorder::turns_of_one_word(const std::string& path) const {
-    std::size_t turns = 1;
-    for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
-        if (const auto above = noted_.find(path.substr(0, dot)); above != noted_.end())
-            turns *= std::max<std::size_t>(1, above->second.words.size());
-    return turns;
-}
-
-std::size_t KeyRecorder::turns() const {
-    std::size_t most = 1;
-    for (const auto& [path, noted] : noted_)
-        most = std::max(most, noted.words.size() * turns_of_one_word(path));
-    return most;
-}
-
-KeyRecorder::Noted& KeyRecorder::of(const std::string& path) {
+void KeyRecorder::record(const std::string& path, bool list, const std::function<void()>& body) {
     Noted& noted = noted_[path];
     noted.table.path = path;
-    return noted;
-}
-
-void KeyRecorder::enter(const std::string& path, bool list) { of(path).table.list = list; }
-
-std::optional<std::string> KeyRecorder::kind_of(const Noted& noted) const {
-    if (noted.words.empty()) return std::string();
-    if (!turn_) return std::nullopt;
-    return noted.words[*turn_ / turns_of_one_word(noted.table.path) % noted.words.size()];
+    noted.table.list = list;
+    noted.kind.clear();
+    noted.names_kinds = false;
+    body();
+    const std::vector<std::string> words = noted.words;
+    for (const std::string& word : words) {
+        noted.kind = word;
+        body();
+    }
 }
 
 void KeyRecorder::note(const std::string& path, KeyEntry entry) {
-    Noted& noted = of(path);
-    const auto kind = kind_of(noted);
-    // The first readings only learn which tables have kinds.
-    if (!turn_ || !kind) return;
+    Noted& noted = noted_[path];
+    if (noted.is_waiting()) return;
     if (given_ && std::find(noted.order.begin(), noted.order.end(), entry.name) == noted.order.end())
         noted.order.push_back(entry.name);
-    if (!noted.seen.emplace(*kind, entry.name).second) return;
+    if (noted.seen.contains({"", entry.name}) || !noted.seen.emplace(noted.kind, entry.name).second) return;
     auto& keys = noted.table.keys;
     auto at = std::find_if(keys.begin(), keys.end(), [&](const KeyEntry& other) { return other.same_as(entry); });
     if (at == keys.end()) at = keys.insert(keys.end(), std::move(entry));
-    if (!kind->empty()) at->kinds.push_back(*kind);
+    if (!noted.kind.empty()) at->kinds.push_back(noted.kind);
 }
 
-void KeyRecorder::add_rule(std::vector<KeyRule>& rules, const Noted& noted, KeyRule rule) const {
-    const auto kind = kind_of(noted);
-    if (!turn_ || !kind) return;
+void KeyRecorder::add_rule(std::vector<KeyRule>& rules, const Noted& noted, KeyRule rule) {
+    if (noted.is_waiting()) return;
     auto at = std::find_if(rules.begin(), rules.end(), [&](const KeyRule& other) { return other.keys == rule.keys; });
     if (at == rules.end()) at = rules.insert(rules.end(), std::move(rule));
-    if (!kind->empty() && std::find(at->kinds.begin(), at->kinds.end(), *kind) == at->kinds.end())
-        at->kinds.push_back(*kind);
+    if (!noted.kind.empty() && std::find(at->kinds.begin(), at->kinds.end(), noted.kind) == at->kinds.end())
+        at->kinds.push_back(noted.kind);
 }
 
 void KeyRecorder::note_one_of(const std::string& path, std::initializer_list<std::string_view> keys) {
-    Noted& noted = of(path);
+    Noted& noted = noted_[path];
     add_rule(noted.table.one_of, noted, {{keys.begin(), keys.end()}, {}});
 }
 
 void KeyRecorder::note_not_both(const std::string& path, std::string_view key, std::string_view other) {
-    Noted& noted = of(path);
+    Noted& noted = noted_[path];
     add_rule(noted.table.not_both, noted, {{std::string(key), std::string(other)}, {}});
 }
 
 std::optional<std::size_t> KeyRecorder::kind(const std::string& path, std::span<const std::string_view> words) {
-    Noted& noted = of(path);
+    Noted& noted = noted_[path];
     noted.words.assign(words.begin(), words.end());
-    if (!turn_) return std::nullopt;
-    return *turn_ / turns_of_one_word(path) % words.size();
+    noted.names_kinds = true;
+    if (noted.kind.empty()) return std::nullopt;
+    return static_cast<std::size_t>(std::find(words.begin(), words.end(), noted.kind) - words.begin());
 }
 
 void KeyRecorder::refuse_kind(const std::string& path) {
-    Noted& noted = of(path);
-    if (const auto kind = kind_of(noted); turn_ && kind) noted.refused.insert(*kind);
+    Noted& noted = noted_[path];
+    if (!noted.kind.empty()) noted.refused.insert(noted.kind);
 }
 
-void KeyRecorder::look_for(const std::string& path, std::string_view key) { of(path).looked_for.emplace(key); }
+void KeyRecorder::look_for(const std::string& path, std::string_view key) { noted_[path].looked_for.emplace(key); }
 
 KeyTable KeyRecorder::finished(const Noted& noted) {
     KeyTable table = noted.table;

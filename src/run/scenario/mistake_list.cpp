@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -21,53 +22,52 @@ std::string on_one_line(std::string_view sentence) {
     return end < sentence.size() ? line + "..." : line;
 }
 
-void MistakeList::add(const toml::source_region& where, const std::string& sentence, ErrorCode code) {
-    const toml::source_position place = place_of(where, sentence);
-    const Change* change = change_of(where, sentence);
-    const std::string told = change != nullptr ? change->key + sentence.substr(change->path.size()) : sentence;
-    mistakes_.push_back({place.line, place.column, on_one_line(told + changes_text_), code});
-}
-
-void MistakeList::changed(std::string path, std::string key, const toml::source_region& where,
-                          const std::string& words) {
-    changes_.push_back({std::move(path), std::move(key), where.begin});
-    changes_text_ += (changes_text_.empty() ? "; with " : ", ") + words;
-}
-
 // What was put in after parsing has no place of its own.
 const MistakeList::Change* MistakeList::change_of(const toml::source_region& where, std::string_view sentence) const {
-    if (where.begin.line > 0) return nullptr;
-    for (const Change& change : changes_)
-        if (sentence.starts_with(change.path)) return &change;
-    return nullptr;
+    if (where.begin.line > 0 || changes_.empty()) return nullptr;
+    const auto begins = [&](const Change& change) { return sentence.starts_with(change.path); };
+    auto found = std::find_if(changes_.begin(), changes_.end(), begins);
+    const auto speaks = [&](const Change& change) { return speaks_of(sentence, change.path); };
+    if (found == changes_.end()) found = std::find_if(changes_.begin(), changes_.end(), speaks);
+    return found == changes_.end() ? &changes_.front() : &*found;
 }
 
-toml::source_position MistakeList::place_of(const toml::source_region& where, std::string_view sentence) const {
-    if (where.begin.line > 0) return where.begin;
-    if (const Change* change = change_of(where, sentence)) return change->place;
-    for (const Change& change : changes_)
-        if (speaks_of(sentence, change.path)) return change.place;
-    return changes_.empty() ? toml::source_position{1, 1} : changes_.front().place;
+std::string MistakeList::told(const toml::source_region& where, std::string_view sentence) const {
+    const Change* change = change_of(where, sentence);
+    std::string text(sentence);
+    if (change != nullptr && sentence.starts_with(change->path)) {
+        text.replace(0, change->path.size(), change->option.empty() ? change->key : change->option);
+        if (!change->option.empty()) return text;
+    }
+    if (change != nullptr && !change->option.empty()) return fmt::format("{}: {}", change->option, text);
+    const toml::source_position place = where.begin.line > 0 ? where.begin
+                                        : change != nullptr  ? change->place
+                                                             : toml::source_position{1, 1};
+    return fmt::format("{}:{}:{}: {}", file_, place.line, place.column, text);
 }
 
-std::string MistakeList::told_at(const toml::source_region& where, std::string_view key) const {
-    const toml::source_position place = place_of(where, key);
-    return fmt::format("{}:{}:{}: ", file_, place.line, place.column);
+void MistakeList::add(const toml::source_region& where, const std::string& sentence, ErrorCode code) {
+    const Change* change = change_of(where, sentence);
+    std::string words;
+    for (const Change& each : changes_)
+        if (!each.words.empty()) words += (words.empty() ? "; with " : ", ") + each.words;
+    const toml::source_position place = change != nullptr ? change->place : where.begin;
+    mistakes_.push_back({place, told(where, on_one_line(sentence + words)), code});
 }
 
 Error MistakeList::error() const {
     std::vector<Mistake> sorted = mistakes_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const Mistake& a, const Mistake& b) {
-        return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+        return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
     });
-    // A key that is looked at twice is wrong once.
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    std::string lines;
-    for (const Mistake& m : sorted)
-        lines += fmt::format("{}{}:{}:{}: {}", lines.empty() ? "" : "\n", file_, m.line, m.column, m.sentence);
-    const bool outside = std::all_of(sorted.begin(), sorted.end(),
-                                     [](const Mistake& mistake) { return mistake.code == ErrorCode::outside; });
-    return {outside ? ErrorCode::outside : ErrorCode::input, std::move(lines)};
+    std::vector<std::string_view> lines;
+    bool outside = true;
+    for (const Mistake& mistake : sorted) {
+        outside = outside && mistake.code == ErrorCode::outside;
+        // A key that is looked at twice is wrong once.
+        if (lines.empty() || lines.back() != mistake.line) lines.push_back(mistake.line);
+    }
+    return {outside ? ErrorCode::outside : ErrorCode::input, fmt::format("{}", fmt::join(lines, "\n"))};
 }
 
 }  // namespace skyloop

@@ -9,126 +9,154 @@ namespace skyloop {
 namespace {
 
 void read_terms(TableReader& modern, ModernSettings& settings) {
-    modern.table("terms", [&](TableReader& terms) {
+    modern.table("terms", "each cause of error by itself", [&](TableReader& terms) {
         for (const NamedTerm& named : error_terms(settings))
-            terms.table(named.name, [&](TableReader& table) {
-                table.boolean("enabled", named.term->enabled);
+            terms.table(named.name, {named.meaning, ""}, [&](TableReader& table) {
+                table.boolean("enabled", named.term->enabled,
+                              "false leaves exactly no delay, loss or error of this cause");
                 if (!settings.errors && table.has("enabled") && named.term->enabled)
                     table.mistake("enabled",
                                   "is true beside errors = \"none\", which switches every term off; expected "
                                   "one of the two");
-                table.number("scale", named.term->scale, {0, 1000});
-                if (!table.has("seed")) return;
-                std::uint64_t seed = 1;
-                table.integer("seed", seed, NumberRange::not_negative());
-                named.term->seed = seed;
+                table.number("scale", named.term->scale, {0, 1000}, "of its delay, loss or error");
+                table.integer(
+                    "seed", named.term->seed, NumberRange::not_negative(),
+                    {"random numbers of its own: other dice for this cause, the same for all others", "the run's"});
             });
     });
 }
 
 void read_clock(TableReader& table, ModernSettings& settings) {
     ReceiverClockParameters& clock = settings.measurement.clock;
-    table.number("h0_s", clock.noise.h0, {0, 1e-10});
-    table.number("h_minus_2_per_s", clock.noise.h_minus_2, {0, 1e-10});
-    table.quantity("temperature_k", clock.temperature.deviation, {0, 100});
-    table.quantity("temperature_time_s", clock.temperature.correlation_time, {0, 1e6});
-    table.number("frequency_per_k", clock.temperature.per_kelvin, {0, 1e-3});
-    table.quantity("bias_m", clock.bias, {-3e8, 3e8});
-    table.quantity("drift_mps", clock.drift, {-1e5, 1e5});
-    static constexpr std::array<Word<ClockSteering>, 3> steerings{
-        {{"free", ClockSteering::free_running},
-         {"millisecond-jumps", ClockSteering::millisecond_jumps},
-         {"continuous", ClockSteering::continuous}}};
-    table.word("steering", steerings, clock.steering);
-    if (clock.steering == ClockSteering::continuous)
-        tell_idle(table, settings, "clock", {"drift_mps"},
-                  "with steering = \"free\" or \"millisecond-jumps\"; a clock that is steered continuously starts "
-                  "without drift");
+    table.number("h0_s", clock.noise.h0, {0, 1e-10}, "white noise of the frequency, coefficient of the Allan variance");
+    table.number("h_minus_2_per_s", clock.noise.h_minus_2, {0, 1e-10},
+                 "random walk of the frequency, coefficient of the Allan variance");
+    table.quantity("temperature_k", clock.temperature.deviation, {0, 100},
+                   "σ of the oscillator's temperature; 0: constant");
+    table.quantity("temperature_time_s", clock.temperature.correlation_time, {0, 1e6}, "its correlation time");
+    table.number("frequency_per_k", clock.temperature.per_kelvin, {0, 1e-3}, "what it does to the frequency, relative");
+    table.quantity("bias_m", clock.bias, {-3e8, 3e8}, "at the start, times the speed of light");
+    table.word("steering",
+               {{"free", ClockSteering::free_running},
+                {"millisecond-jumps", ClockSteering::millisecond_jumps},
+                {"continuous", ClockSteering::continuous}},
+               clock.steering,
+               {"free, whole milliseconds when the bias passes half of one, or within tens of ns",
+                "millisecond-jumps; survey continuous"});
+    table.where(
+        clock.steering != ClockSteering::continuous,
+        "with steering = \"free\" or \"millisecond-jumps\"; a clock that is steered continuously starts without drift",
+        [&] {
+            table.quantity("drift_mps", clock.drift, {-1e5, 1e5},
+                           "at the start, times the speed of light; 0 with steering continuous");
+        });
 }
 
 void read_tracking(TableReader& table, MeasurementParameters& p) {
-    table.quantity("code_bandwidth_hz", p.code_loop.bandwidth, {0.001, 100});
-    table.number("code_spacing_chips", p.code_loop.spacing_chips, {0.01, 1.99});
-    table.quantity("front_end_bandwidth_hz", p.code_loop.front_end_bandwidth, {1e5, 1e9});
+    table.quantity("code_bandwidth_hz", p.code_loop.bandwidth, {0.001, 100}, {"of the code loop", "0.5; survey 0.2"});
+    table.number("code_spacing_chips", p.code_loop.spacing_chips, {0.01, 1.99},
+                 {"early to late; of faster codes in proportion", "0.25; survey 0.1"});
+    table.quantity("front_end_bandwidth_hz", p.code_loop.front_end_bandwidth, {1e5, 1e9},
+                   {"two-sided; of codes above 1.023 Mchip/s at least twice their rate", "8e6; survey 20e6"});
     Seconds integration = p.code_loop.integration;
-    table.quantity("integration_s", integration, {1e-4, 10});
+    table.quantity("integration_s", integration, {1e-4, 10}, "of all loops, before detection");
     p.code_loop.integration = p.phase_loop.integration = p.frequency_loop.integration = integration;
-    table.quantity("phase_bandwidth_hz", p.phase_loop.bandwidth, {0.01, 1000});
-    table.quantity("frequency_bandwidth_hz", p.frequency_loop.bandwidth, {0.01, 1000});
-    table.quantity("cn0_resolution_db", p.cn0_resolution, {0, 10});
-    table.number("slips_per_hour", p.slips_per_hour, {0, 1e6});
+    table.quantity("phase_bandwidth_hz", p.phase_loop.bandwidth, {0.01, 1000}, "of the phase loop");
+    table.quantity("frequency_bandwidth_hz", p.frequency_loop.bandwidth, {0.01, 1000}, "of the frequency loop");
+    table.quantity("cn0_resolution_db", p.cn0_resolution, {0, 10}, {"of the reported C/N0; 0: none", "1; survey 0.25"});
+    table.number("slips_per_hour", p.slips_per_hour, {0, 1e6}, {"of each carrier in good conditions", "0; phone 60"});
 }
 
 void read_acquisition(TableReader& table, AcquisitionParameters& p) {
-    table.quantity("cold_threshold_dbhz", p.cold_threshold, {-100, 100});
-    table.quantity("warm_threshold_dbhz", p.warm_threshold, {-100, 100});
-    table.quantity("loss_threshold_dbhz", p.loss_threshold, {-100, 100});
-    table.quantity("phase_threshold_dbhz", p.phase_threshold, {-100, 100});
-    table.quantity("loss_after_s", p.loss_after, {0, 3600});
-    table.quantity("reacquisition_s", p.reacquisition, {0, 3600});
-    table.quantity("hot_search_s", p.hot_search, {0, 3600});
-    table.quantity("warm_search_s", p.warm_search, {0, 3600});
-    table.quantity("cold_search_s", p.cold_search, {0, 3600});
-    table.quantity("half_cycle_after_s", p.half_cycle_after, {0, 3600});
+    table.quantity("cold_threshold_dbhz", p.cold_threshold, {-100, 100}, "C/N0 that a cold search needs");
+    table.quantity("warm_threshold_dbhz", p.warm_threshold, {-100, 100},
+                   "C/N0 that a warm or hot search needs, and a lost signal");
+    table.quantity("loss_threshold_dbhz", p.loss_threshold, {-100, 100}, "C/N0 below which lock is lost");
+    table.quantity("phase_threshold_dbhz", p.phase_threshold, {-100, 100},
+                   "C/N0 from which the carrier's phase is locked");
+    table.quantity("loss_after_s", p.loss_after, {0, 3600}, "below the threshold for so long, lock is lost");
+    table.quantity("reacquisition_s", p.reacquisition, {0, 3600},
+                   "of a signal lost less than a minute ago; later it takes no less");
+    table.quantity("hot_search_s", p.hot_search, {0, 3600}, "longest search of a hot start");
+    table.quantity("warm_search_s", p.warm_search, {0, 3600}, "longest search of a warm start");
+    table.quantity("cold_search_s", p.cold_search, {0, 3600}, "longest search of a cold start");
+    table.quantity("half_cycle_after_s", p.half_cycle_after, {0, 3600},
+                   "of phase lock, until the half cycle is resolved");
 }
 
 void read_multipath(TableReader& table, StatisticalMultipath& p) {
-    table.quantity("floor_m", p.floor, {0, 1000});
-    table.quantity("at_horizon_m", p.at_horizon, {0, 1000});
-    table.quantity("static_time_s", p.static_time, {0, 1e6});
-    table.quantity("moving_time_s", p.moving_time, {0, 1e6});
+    table.quantity("floor_m", p.floor, {0, 1000}, {"σ of the code high in the sky", "0.5; survey 0.25, phone 3"});
+    table.quantity("at_horizon_m", p.at_horizon, {0, 1000},
+                   {"σ of the code that comes to it at the horizon", "1; survey 0.5, phone 4"});
+    table.quantity("static_time_s", p.static_time, {0, 1e6}, {"correlation time at rest", "120; survey and phone 30"});
+    table.quantity("moving_time_s", p.moving_time, {0, 1e6}, "correlation time above 1 m/s");
 }
 
 void read_filter(TableReader& table, FilterParameters& p) {
-    static constexpr std::array<Word<FilterKind>, 2> kinds{
-        {{"none", FilterKind::none}, {"smoothed", FilterKind::smoothed}}};
-    table.word("filter", kinds, p.kind);
-    table.quantity("position_memory_s", p.position_memory, {0.01, 1e5});
-    table.quantity("code_smoothing_s", p.code_smoothing, {0, 1e5});
-    table.quantity("coasting_s", p.coasting, {0, 3600});
+    table.word("filter", {{"none", FilterKind::none}, {"smoothed", FilterKind::smoothed}}, p.kind,
+               {"none: every epoch stands alone", "smoothed; survey none"});
+    table.quantity("position_memory_s", p.position_memory, {0.01, 1e5},
+                   "how long the filter remembers single positions at rest");
+    table.quantity("code_smoothing_s", p.code_smoothing, {0, 1e5},
+                   "of the code by the carrier, before the solution; 0: none");
+    table.quantity("coasting_s", p.coasting, {0, 3600}, "how long a lost fix is carried on, as dead reckoning");
 }
 
 void read_corrections(TableReader& table, ModernSettings& settings) {
-    static constexpr std::array<Word<std::optional<IonosphereCorrection>>, 3> ionospheres{
-        {{"none", IonosphereCorrection::none},
-         {"broadcast", IonosphereCorrection::broadcast},
-         {"klobuchar", IonosphereCorrection::klobuchar}}};
-    table.word("ionosphere_correction", ionospheres, settings.ionosphere_correction);
-    static constexpr std::array<Word<std::optional<TroposphereCorrection>>, 3> tropospheres{
-        {{"none", TroposphereCorrection::none},
-         {"saastamoinen", TroposphereCorrection::saastamoinen},
-         {"niell", TroposphereCorrection::niell}}};
-    table.word("troposphere_correction", tropospheres, settings.troposphere_correction);
-    table.number("relative_humidity", settings.navigation.corrections.relative_humidity, {0, 1});
-    table.boolean("ionosphere_free", settings.navigation.corrections.ionosphere_free);
+    table.word("ionosphere_correction",
+               {{"none", IonosphereCorrection::none},
+                {"broadcast", IonosphereCorrection::broadcast},
+                {"klobuchar", IonosphereCorrection::klobuchar}},
+               settings.ionosphere_correction,
+               {"what the receiver takes off", "klobuchar; none without an ionosphere"});
+    table.word("troposphere_correction",
+               {{"none", TroposphereCorrection::none},
+                {"saastamoinen", TroposphereCorrection::saastamoinen},
+                {"niell", TroposphereCorrection::niell}},
+               settings.troposphere_correction, {"what the receiver takes off", "niell; none without a troposphere"});
+    table.number("relative_humidity", settings.navigation.corrections.relative_humidity, {0, 1},
+                 "that the receiver assumes");
+    table.boolean("ionosphere_free", settings.navigation.corrections.ionosphere_free,
+                  "combines both signals of a satellite where two are tracked, and solves with these satellites alone "
+                  "where they suffice");
 }
 
 void read_solution(TableReader& table, ModernSettings& settings) {
     read_corrections(table, settings);
     NavigationParameters& p = settings.navigation;
-    table.quantity("weight_floor_m", p.weights.floor, {0.001, 1000});
-    table.quantity("weight_at_zenith_m", p.weights.at_zenith, {0, 1000});
-    table.quantity("weight_beidou_orbits_m", p.weights.beidou_orbits, {0, 1000});
-    table.quantity("weight_glonass_orbits_m", p.weights.glonass_orbits, {0, 1000});
+    table.quantity("weight_floor_m", p.weights.floor, {0.001, 1000},
+                   {"s0 of the variance s0² + s1²/sin² e", "0.42; survey 0.36, phone 3"});
+    table.quantity("weight_at_zenith_m", p.weights.at_zenith, {0, 1000},
+                   {"s1 of the variance s0² + s1²/sin² e", "0.42; survey 0.36, phone 3"});
+    table.quantity("weight_beidou_orbits_m", p.weights.beidou_orbits, {0, 1000},
+                   "σ that the receiver adds for orbits and clocks of BeiDou");
+    table.quantity("weight_glonass_orbits_m", p.weights.glonass_orbits, {0, 1000},
+                   "σ that the receiver adds for orbits and clocks of GLONASS");
     read_filter(table, p.filter);
-    table.boolean("raim", p.integrity.enabled);
-    table.number("false_alarm", p.integrity.false_alarm, {1e-12, 0.5});
-    table.integer("most_exclusions", p.integrity.most_exclusions, {0, 20});
-    table.number("position_accuracy_scale", p.accuracy.position_scale, {0, 100});
-    table.number("velocity_accuracy_scale", p.accuracy.velocity_scale, {0, 100});
-    table.number("accuracy_ionosphere_share", p.accuracy.ionosphere_share, {0, 10});
-    table.number("accuracy_ionosphere_tilt", p.accuracy.ionosphere_tilt, {0, 10});
-    table.number("accuracy_troposphere_share", p.accuracy.troposphere_share, {0, 10});
-    if (table.has("ephemeris_collection_s")) {
-        Seconds collection = p.ephemeris_collection;
-        table.quantity("ephemeris_collection_s", collection, {0, 1e5});
-        settings.ephemeris_collection = collection;
-    }
-    static constexpr std::array<Word<DifferentialKind>, 4> kinds{{{"none", DifferentialKind::none},
-                                                                  {"sbas", DifferentialKind::sbas},
-                                                                  {"rtk-float", DifferentialKind::rtk_float},
-                                                                  {"rtk-fixed", DifferentialKind::rtk_fixed}}};
-    table.word("differential", kinds, p.differential.kind);
+    table.boolean("raim", p.integrity.enabled, "the residuals are tested");
+    table.number("false_alarm", p.integrity.false_alarm, {1e-12, 0.5},
+                 "probability that the test finds a fault where there is none");
+    table.integer("most_exclusions", p.integrity.most_exclusions, {0, 20},
+                  "how many satellites the test may throw out");
+    table.number("position_accuracy_scale", p.accuracy.position_scale, {0, 100}, "of the reported accuracy");
+    table.number("velocity_accuracy_scale", p.accuracy.velocity_scale, {0, 100}, "of the reported accuracy");
+    table.number(
+        "accuracy_ionosphere_share", p.accuracy.ionosphere_share, {0, 10},
+        "σ that the reported accuracy holds for a wrong correction, as a share of it, the same for all satellites");
+    table.number("accuracy_ionosphere_tilt", p.accuracy.ionosphere_tilt, {0, 10},
+                 "the same, north and east, for a pierce point 9° away");
+    table.number(
+        "accuracy_troposphere_share", p.accuracy.troposphere_share, {0, 10},
+        "σ that the reported accuracy holds for a wrong correction, as a share of it, the same for all satellites");
+    table.quantity(
+        "ephemeris_collection_s", settings.ephemeris_collection, {0, 1e5},
+        {"of tracking, until a satellite's record has been received", "timing.warm_start_s of the board less 3"});
+    table.word("differential",
+               {{"none", DifferentialKind::none},
+                {"sbas", DifferentialKind::sbas},
+                {"rtk-float", DifferentialKind::rtk_float},
+                {"rtk-fixed", DifferentialKind::rtk_fixed}},
+               p.differential.kind, "corrections from outside, as a regime of the errors");
 }
 
 // What was told idle beside the truth acts after all where the receiver does not correct, or Galileo by the very truth.
@@ -145,30 +173,30 @@ void forget_acting_residual(ModernSettings& settings) {
 
 }  // namespace
 
-void tell_idle(TableReader& table, ModernSettings& settings, std::string_view name,
-               std::initializer_list<std::string_view> keys, std::string_view acts) {
-    for (const std::string_view key : keys)
-        if (table.has(key))
-            settings.idle_keys.push_back(
-                fmt::format("model.modern.{}.{}: has no effect here; it acts {}", name, key, acts));
-}
-
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder) {
     const auto preset =
-        modern.choice("preset", modern_preset_names, modern_preset_names[static_cast<std::size_t>(settings.preset)]);
-    const auto surroundings = modern.choice("surroundings", surroundings_names,
-                                            surroundings_names[static_cast<std::size_t>(settings.surroundings)]);
+        modern.choice("preset", modern_preset_names,
+                      "whose receiver it is: geodetic, a u-blox 6 to M8 with a patch antenna, a telephone's",
+                      modern_preset_names[static_cast<std::size_t>(settings.preset)]);
+    const auto surroundings =
+        modern.choice("surroundings", surroundings_names,
+                      "where no scene tells: a roof or a field, or a garden between houses and trees",
+                      surroundings_names[static_cast<std::size_t>(settings.surroundings)]);
     const bool errors = settings.errors;
     settings = ModernSettings::of(preset ? static_cast<ModernPreset>(*preset) : settings.preset,
                                   surroundings ? static_cast<Surroundings>(*surroundings) : settings.surroundings);
     settings.errors = errors;
     read_terms(modern, settings);
     read_modern_propagation_keys(modern, settings, folder);
-    modern.table("clock", [&](TableReader& t) { read_clock(t, settings); });
-    modern.table("tracking", [&](TableReader& t) { read_tracking(t, settings.measurement); });
-    modern.table("acquisition", [&](TableReader& t) { read_acquisition(t, settings.measurement.acquisition); });
-    modern.table("multipath", [&](TableReader& t) { read_multipath(t, settings.measurement.multipath_model); });
-    modern.table("solution", [&](TableReader& t) { read_solution(t, settings); });
+    modern.table("clock", "the receiver's oscillator", [&](TableReader& t) { read_clock(t, settings); });
+    modern.table("tracking", "the receiver's loops", [&](TableReader& t) { read_tracking(t, settings.measurement); });
+    modern.table("acquisition", "search, lock and loss",
+                 [&](TableReader& t) { read_acquisition(t, settings.measurement.acquisition); });
+    modern.table("multipath", "echoes where no scene tells: σ = floor + horizon · exp(−elevation/10°)",
+                 [&](TableReader& t) { read_multipath(t, settings.measurement.multipath_model); });
+    modern.table("solution", "what the receiver makes of its measurements",
+                 [&](TableReader& t) { read_solution(t, settings); });
+    settings.idle_keys = modern.idle_keys();
     forget_acting_residual(settings);
 }
 

@@ -93,25 +93,25 @@ ModernSettings ModernSettings::of(ModernPreset preset, Surroundings surroundings
 std::vector<NamedTerm> error_terms(ModernSettings& settings) {
     ModernPropagationParameters& p = settings.propagation;
     MeasurementParameters& m = settings.measurement;
-    return {{"signal_in_space", &p.signal_in_space},
-            {"ionosphere", &p.ionosphere},
-            {"ionosphere_residual", &p.ionosphere_residual},
-            {"troposphere", &p.troposphere},
-            {"troposphere_residual", &p.troposphere_residual},
-            {"gas", &p.gas},
-            {"clouds", &p.clouds},
-            {"rain", &p.rain},
-            {"foliage", &p.foliage},
-            {"antenna", &p.antenna},
-            {"satellite_power", &p.satellite_power},
-            {"scintillation", &p.scintillation},
-            {"interference", &p.interference},
-            {"code_noise", &m.code_noise},
-            {"phase_noise", &m.phase_noise},
-            {"doppler_noise", &m.doppler_noise},
-            {"multipath", &m.multipath},
-            {"receiver_clock", &m.receiver_clock},
-            {"cycle_slips", &m.cycle_slips}};
+    return {{"signal_in_space", &p.signal_in_space, "orbit and clock of the satellite against what it broadcasts"},
+            {"ionosphere", &p.ionosphere, "delay of the true ionosphere, and with it the residual"},
+            {"ionosphere_residual", &p.ionosphere_residual, "how the day departs from the model of the truth"},
+            {"troposphere", &p.troposphere, "delay of the air"},
+            {"troposphere_residual", &p.troposphere_residual, "vapour that wanders"},
+            {"gas", &p.gas, "loss in oxygen and vapour"},
+            {"clouds", &p.clouds, "loss in clouds"},
+            {"rain", &p.rain, "loss in rain"},
+            {"foliage", &p.foliage, "loss in trees"},
+            {"antenna", &p.antenna, "gain of the receiving antenna less the film on it"},
+            {"satellite_power", &p.satellite_power, "spread between satellites, and its ripple"},
+            {"scintillation", &p.scintillation, "restless ionosphere: fading, noise of the loops, loss of lock"},
+            {"interference", &p.interference, "what a jammer takes from C/N0"},
+            {"code_noise", &m.code_noise, "of the code loop"},
+            {"phase_noise", &m.phase_noise, "of the phase loop"},
+            {"doppler_noise", &m.doppler_noise, "of the frequency loop"},
+            {"multipath", &m.multipath, "echoes, in the code and a hundredth of it in the carrier"},
+            {"receiver_clock", &m.receiver_clock, "bias and drift of the oscillator"},
+            {"cycle_slips", &m.cycle_slips, "breaks of the carrier's count and unresolved half cycles"}};
 }
 
 // What corrections from outside leave of each error. Both ends of a baseline see the same orbits, clocks and air; with

@@ -51,6 +51,7 @@ struct ModernSettings {
 struct NamedTerm {
     std::string_view name;
     ErrorTerm* term = nullptr;
+    std::string_view meaning{};  ///< for people
 };
 /// Every cause that can be switched, scaled and seeded by itself.
 std::vector<NamedTerm> error_terms(ModernSettings& settings);

@@ -6,12 +6,13 @@
 
 namespace skyloop {
 
-std::optional<Geodetic> PlaceReader::read(TableReader& table, const std::string& key) {
+std::optional<Geodetic> PlaceReader::read(TableReader& table, const std::string& key, KeyText text) {
     const std::string level_key = key + "_level";
-    const auto on_earth = table.place(key);
-    const auto in_level = table.numbers(level_key, 3);
-    table.note_not_both(key, level_key);
-    if (on_earth && in_level) table.mistake(level_key, fmt::format("stands beside {}; expected one of the two", key));
+    const std::string meaning = fmt::format("{}: latitude, longitude, height above the ellipsoid", text.meaning);
+    const auto on_earth = table.place(key, {meaning, text.standard});
+    const std::string in_frame = fmt::format("the same in the coordinates of [frame], instead of `{}`: x, y, z", key);
+    const auto in_level = table.numbers(level_key, 3, {in_frame, "none"});
+    table.not_both(key, level_key);
     if (!in_level) return on_earth;
     if (!level_) {
         table.mistake(level_key, "needs a [frame] that says where the level lies");
@@ -40,31 +41,39 @@ void PlaceReader::warn_beyond_reach(const Position<Level>& point) {
                     point.vector().head<2>().squaredNorm() * std::pow(placement.unit.value(), 2) / (2 * 6371e3)));
 }
 
+std::optional<Geodetic> PlaceReader::read_needed(TableReader& table, const std::string& key, KeyText text) {
+    const auto place = read(table, key, text);
+    const std::string level_key = key + "_level";
+    table.needs_one_of({key, level_key},
+                       fmt::format("has no {}; expected {} = [latitude, longitude, height]", text.meaning, key));
+    return place;
+}
+
 Angle read_heading(TableReader& table) {
-    double heading = 0;
-    table.number("heading_deg", heading, {-360, 360});
-    return Angle::degrees(heading);
+    Angle heading;
+    table.degrees("heading_deg", heading, {-360, 360},
+                  "where the vehicle looks until it moves, clockwise from north; then it looks where it goes");
+    return heading;
 }
 
 void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
     FixedSettings fixed;
     fixed.heading = read_heading(table);
-    if (const auto at = places.read(table, "at")) fixed.at = *at;
-    table.needs_one_of({"at", "at_level"}, "kind \"fixed\" has no place; expected at = [latitude, longitude, height]");
+    if (const auto at = places.read_needed(table, "at", {"place", "none"})) fixed.at = *at;
     trajectory = fixed;
 }
 
 void read_waypoint_motion(TableReader& row, Waypoint& corner) {
-    row.needs_one_of({"at", "at_level"}, "has no place; expected at = [latitude, longitude, height]");
-    row.quantity("speed_mps", corner.speed, {1e-3, 12000});
-    row.quantity("hold_s", corner.hold, {0, 1e7});
+    row.quantity("speed_mps", corner.speed, {1e-3, 12000},
+                 {"from here to the next corner", "the last one given, at first 10"});
+    row.quantity("hold_s", corner.hold, {0, 1e7}, "stop here before leaving");
 }
 
 void read_waypoint_tables(TableReader& table, const std::function<void(TableReader&)>& read_corner) {
     constexpr std::size_t fewest_corners = 2;
     std::size_t corners = 0;
     const auto read_and_count = [&](TableReader& row) { ++corners, read_corner(row); };
-    table.tables("waypoint", read_and_count, fewest_corners);
+    table.tables("waypoint", "the corners of the way, at least two", read_and_count, fewest_corners);
     if (corners < fewest_corners)
         table.mistake_here(
             fmt::format("kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]", corners));
@@ -73,14 +82,12 @@ void read_waypoint_tables(TableReader& table, const std::function<void(TableRead
 void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
     CircleSettings circle;
     circle.heading = read_heading(table);
-    if (const auto centre = places.read(table, "centre")) circle.shape.centre = *centre;
-    table.needs_one_of({"centre", "centre_level"},
-                       "kind \"circle\" has no centre; expected centre = [latitude, longitude, height]");
-    table.quantity("radius_m", circle.shape.radius, {0.1, 1e6});
-    table.quantity("speed_mps", circle.shape.speed, {-12000, 12000});
-    double azimuth = 0;
-    table.number("start_azimuth_deg", azimuth, {-360, 360});
-    circle.shape.start_azimuth = Angle::degrees(azimuth);
+    if (const auto centre = places.read_needed(table, "centre", {"centre", "none"})) circle.shape.centre = *centre;
+    table.quantity("radius_m", circle.shape.radius, {0.1, 1e6}, "of the circle");
+    table.quantity("speed_mps", circle.shape.speed, {-12000, 12000},
+                   "along the circle; a negative one runs anticlockwise");
+    table.degrees("start_azimuth_deg", circle.shape.start_azimuth, {-360, 360},
+                  "from the centre to the place at the start, clockwise from north");
     trajectory = circle;
 }
 

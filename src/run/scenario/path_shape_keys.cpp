@@ -10,17 +10,10 @@ namespace {
 
 using WishFound = std::optional<PathWish>;
 
-std::optional<Eigen::Vector3d> read_needed_place(const ShapeReading& r, const std::string& key) {
-    const auto place = r.places.read(r.table, key);
-    const std::string level = key + "_level";
-    r.table.needs_one_of({key, level}, fmt::format("has no place; expected {} = [latitude, longitude, height]", key));
-    return place;
-}
-
-void read_angle(TableReader& table, std::string_view key, double& radians) {
-    double degrees = Angle::radians(radians).deg();
-    table.number(key, degrees, {-360, 360});
-    radians = Angle::degrees(degrees).rad();
+void read_angle(TableReader& table, std::string_view key, double& radians, KeyText text) {
+    Angle angle = Angle::radians(radians);
+    table.degrees(key, angle, {-360, 360}, text);
+    radians = angle.rad();
 }
 
 WishFound read_driven_waypoints(const ShapeReading& r) {
@@ -32,7 +25,7 @@ WishFound read_driven_waypoints(const ShapeReading& r) {
     read_waypoint_tables(r.table, [&](TableReader& row) {
         Waypoint corner;
         corner.speed = MetresPerSecond(wish.waypoints.empty() ? r.vehicle.along.speed : wish.waypoints.back().speed);
-        const auto place = r.places.read(row, "at");
+        const auto place = r.places.read(row, "at", "place");
         whole = whole && place;
         read_waypoint_motion(row, corner);
         wish.waypoints.push_back({place.value_or(Eigen::Vector3d::Zero()), corner.speed.value(), corner.hold.value()});
@@ -43,30 +36,31 @@ WishFound read_driven_waypoints(const ShapeReading& r) {
 
 // What laps have in common; false when their centre is missing.
 bool read_laps(const ShapeReading& r, LapWish& lap) {
-    const auto centre = read_needed_place(r, "centre");
+    const auto centre = r.places.read(r.table, "centre", "centre");
     read_speed_and_vehicle(r.table, r.vehicle);
     lap.vehicle = r.vehicle;
     lap.centre = centre.value_or(Eigen::Vector3d::Zero());
     lap.heading = r.heading.rad();
-    r.table.integer("laps", lap.laps, {0, 1e6});
+    r.table.integer("laps", lap.laps, {0, 1e6}, "after which it comes to rest; 0: it never does");
     return centre.has_value();
 }
 
 WishFound read_orbit(const ShapeReading& r) {
     OrbitWish wish;
     const bool whole = read_laps(r, wish.lap);
-    r.table.number("radius_m", wish.radius, {0.1, 1e6});
-    read_angle(r.table, "start_azimuth_deg", wish.start_azimuth);
-    r.table.boolean("anticlockwise", wish.anticlockwise);
-    r.table.number("climb_m", wish.climb, {-1e5, 1e5});
+    r.table.number("radius_m", wish.radius, {0.1, 1e6}, "of the circle");
+    read_angle(r.table, "start_azimuth_deg", wish.start_azimuth,
+               "from the centre to the place at the start, clockwise from north");
+    r.table.boolean("anticlockwise", wish.anticlockwise, "seen from above");
+    r.table.number("climb_m", wish.climb, {-1e5, 1e5}, "change of height over all laps");
     return whole ? WishFound(wish) : std::nullopt;
 }
 
 WishFound read_racetrack(const ShapeReading& r) {
     RacetrackWish wish;
     const bool whole = read_laps(r, wish.lap);
-    r.table.number("length_m", wish.straight, {0.1, 1e6});
-    if (r.table.has("radius_m")) r.table.number("radius_m", wish.radius, {0.1, 1e6});
+    r.table.number("length_m", wish.straight, {0.1, 1e6}, "of the straights");
+    r.table.number("radius_m", wish.radius, {0.1, 1e6}, {"of the turns", "the smallest at its speed"});
     return whole ? WishFound(wish) : std::nullopt;
 }
 
@@ -74,20 +68,20 @@ WishFound read_figure_eight(const ShapeReading& r) {
     FigureEightWish wish;
     const bool whole = read_laps(r, wish.lap);
     double length = 2 * wish.half_length;
-    r.table.number("length_m", length, {0.1, 1e6});
+    r.table.number("length_m", length, {0.1, 1e6}, "of the whole eight");
     wish.half_length = length / 2;
     return whole ? WishFound(wish) : std::nullopt;
 }
 
 WishFound read_lawnmower(const ShapeReading& r) {
     LawnmowerWish wish;
-    const auto corner = read_needed_place(r, "at");
+    const auto corner = r.places.read(r.table, "at", "place");
     read_speed_and_vehicle(r.table, r.vehicle);
     wish.vehicle = r.vehicle;
     wish.heading = r.heading.rad();
-    r.table.number("length_m", wish.length, {0.1, 1e6});
-    r.table.number("spacing_m", wish.spacing, {0.01, 1e5});
-    r.table.integer("lines", wish.lines, {1, 10000});
+    r.table.number("length_m", wish.length, {0.1, 1e6}, "of the lines");
+    r.table.number("spacing_m", wish.spacing, {0.01, 1e5}, "from line to line, each to the right of the one before");
+    r.table.integer("lines", wish.lines, {1, 10000}, "how many");
     if (!corner) return std::nullopt;
     wish.corner = *corner;
     return wish;
@@ -95,11 +89,11 @@ WishFound read_lawnmower(const ShapeReading& r) {
 
 WishFound read_hover(const ShapeReading& r) {
     HoverWish wish;
-    const auto place = read_needed_place(r, "at");
+    const auto place = r.places.read(r.table, "at", "place");
     wish.heading = r.heading.rad();
-    r.table.number("sway_m", wish.sway, {0, 100});
-    r.table.number("wind_mps", wish.wind, {0, 100});
-    read_angle(r.table, "wind_from_deg", wish.wind_from);
+    r.table.number("sway_m", wish.sway, {0, 100}, "root mean square on each horizontal axis, half of it upward");
+    r.table.number("wind_mps", wish.wind, {0, 100}, "wind that it leans into");
+    read_angle(r.table, "wind_from_deg", wish.wind_from, "where the wind comes from, clockwise from north");
     if (!place) return std::nullopt;
     wish.place = *place;
     return wish;
@@ -108,14 +102,15 @@ WishFound read_hover(const ShapeReading& r) {
 WishFound read_float(const ShapeReading& r) {
     FloatWish wish;
     r.vehicle = usual_limits(VehicleClass::boat);
-    const auto place = read_needed_place(r, "at");
+    const auto place = r.places.read(r.table, "at", "place");
     wish.heading = r.heading.rad();
-    r.table.number("speed_mps", wish.speed, {0, 100});
-    r.table.number("wave_height_m", wish.wave_height, {0, 30});
-    r.table.number("wave_period_s", wish.wave_period, {0.5, 60});
-    read_angle(r.table, "wave_from_deg", wish.wave_from);
-    r.table.number("current_mps", wish.current, {0, 100});
-    read_angle(r.table, "current_to_deg", wish.current_to);
+    r.table.number("speed_mps", wish.speed, {0, 100}, "through the water, in the direction of the heading");
+    r.table.number("wave_height_m", wish.wave_height, {0, 30},
+                   "significant: four times the root mean square of the surface");
+    r.table.number("wave_period_s", wish.wave_period, {0.5, 60}, "of the main wave");
+    read_angle(r.table, "wave_from_deg", wish.wave_from, "where the waves come from, clockwise from north");
+    r.table.number("current_mps", wish.current, {0, 100}, "that sets the boat");
+    read_angle(r.table, "current_to_deg", wish.current_to, "where the current goes, clockwise from north");
     if (!place) return std::nullopt;
     wish.place = *place;
     return wish;
@@ -124,14 +119,14 @@ WishFound read_float(const ShapeReading& r) {
 WishFound read_drive(const ShapeReading& r) {
     DriveWish wish;
     r.vehicle = usual_limits(VehicleClass::car);
-    const auto centre = read_needed_place(r, "centre");
+    const auto centre = r.places.read(r.table, "centre", "centre");
     read_speed_and_vehicle(r.table, r.vehicle);
     wish.vehicle = r.vehicle;
     wish.heading = r.heading.rad();
-    r.table.number("area_m", wish.area, {1, 1e6});
-    r.table.number("block_m", wish.block, {1, 1e5});
-    r.table.number("duration_s", wish.seconds, {1, 1e7});
-    r.table.number("stops", wish.stops, {0, 1});
+    r.table.number("area_m", wish.area, {1, 1e6}, "how far it drives from the centre, along the streets");
+    r.table.number("block_m", wish.block, {1, 1e5}, "from crossing to crossing");
+    r.table.number("duration_s", wish.seconds, {1, 1e7}, "about how long it drives");
+    r.table.number("stops", wish.stops, {0, 1}, "share of the crossings at which it waits 5 to 40 s");
     if (!centre) return std::nullopt;
     wish.centre = *centre;
     return wish;
@@ -141,43 +136,49 @@ WishFound read_rocket(const ShapeReading& r) {
     static constexpr std::array<std::string_view, 2> presets{"rocket_1km", "rocket_30km_M3"};
     RocketWish wish;
     r.vehicle = usual_limits(VehicleClass::rocket);
-    const auto pad = read_needed_place(r, "at");
+    const auto pad = r.places.read(r.table, "at", "place");
     wish.heading = r.heading.rad();
-    if (const auto preset = r.table.choice("preset", presets)) choose_rocket(wish, presets[*preset]);
-    r.table.number("boost_mps2", wish.boost, {0, 1000});
-    r.table.number("burn_s", wish.burn, {0.2, 600});
-    r.table.number("drag_per_m", wish.drag, {1e-7, 1});
-    r.table.number("drogue_mps", wish.drogue, {1, 200});
-    r.table.number("main_mps", wish.main, {1, 100});
-    r.table.number("main_below_m", wish.main_below, {0, 1e5});
+    if (const auto preset =
+            r.table.choice("preset", presets, {"a known flight, whose values the other keys change", "none"}))
+        choose_rocket(wish, presets[*preset]);
+    r.table.number("boost_mps2", wish.boost, {0, 1000}, "thrust by mass");
+    r.table.number("burn_s", wish.burn, {0.2, 600}, "of the motor");
+    r.table.number("drag_per_m", wish.drag, {1e-7, 1}, "at sea level: density · drag coefficient · area / (2 · mass)");
+    r.table.number("drogue_mps", wish.drogue, {1, 200},
+                   "falling speed at sea level under the first parachute, from the top on");
+    r.table.number("main_mps", wish.main, {1, 100}, "the same under the second one");
+    r.table.number("main_below_m", wish.main_below, {0, 1e5}, "height above the pad at which the second one opens");
     if (!pad) return std::nullopt;
     wish.pad = *pad;
     return wish;
 }
 
 void read_winds(TableReader& table, std::vector<WindLayer>& winds) {
-    table.tables("wind", [&](TableReader& row) {
-        WindLayer layer;
-        row.number("height_m", layer.height, {-1000, 1e5});
-        row.number("speed_mps", layer.speed, {0, 200});
-        read_angle(row, "to_deg", layer.to);
-        if (!winds.empty() && layer.height <= winds.back().height)
-            row.mistake("height_m", fmt::format("is {:g}, after {:g}; expected ascending heights", layer.height,
-                                                winds.back().height));
-        winds.push_back(layer);
-    });
+    table.tables("wind", {"layers of wind by ascending height", "a jet of 25 m/s eastward at 11 km"},
+                 [&](TableReader& row) {
+                     WindLayer layer;
+                     row.number("height_m", layer.height, {-1000, 1e5}, "above the ellipsoid");
+                     row.number("speed_mps", layer.speed, {0, 200}, "of the wind there");
+                     read_angle(row, "to_deg", layer.to, "where it goes, clockwise from north");
+                     if (!winds.empty() && layer.height <= winds.back().height)
+                         row.mistake("height_m", fmt::format("is {:g}, after {:g}; expected ascending heights",
+                                                             layer.height, winds.back().height));
+                     winds.push_back(layer);
+                 });
 }
 
 WishFound read_balloon(const ShapeReading& r) {
     static constexpr std::array<std::string_view, 1> presets{"balloon_32km"};
     BalloonWish wish;
     r.vehicle = usual_limits(VehicleClass::balloon);
-    const auto place = read_needed_place(r, "at");
+    const auto place = r.places.read(r.table, "at", "place");
     wish.heading = r.heading.rad();
-    if (const auto preset = r.table.choice("preset", presets)) choose_balloon(wish, presets[*preset]);
-    r.table.number("ascent_mps", wish.ascent, {0.5, 50});
-    r.table.number("burst_m", wish.burst, {100, 60000});
-    r.table.number("descent_mps", wish.descent, {1, 100});
+    if (const auto preset =
+            r.table.choice("preset", presets, {"a known flight, whose values the other keys change", "none"}))
+        choose_balloon(wish, presets[*preset]);
+    r.table.number("ascent_mps", wish.ascent, {0.5, 50}, "until it bursts");
+    r.table.number("burst_m", wish.burst, {100, 60000}, "height above the ellipsoid");
+    r.table.number("descent_mps", wish.descent, {1, 100}, "falling speed at sea level under the parachute");
     read_winds(r.table, wish.winds);
     if (!place) return std::nullopt;
     wish.place = *place;
@@ -219,8 +220,8 @@ std::optional<Eigen::Vector3d> on_plane(TableReader& table, const GeodesicPlane&
     return std::nullopt;
 }
 
-std::optional<Eigen::Vector3d> PlaneReader::read(TableReader& table, const std::string& key) {
-    const auto place = places_.read(table, key);
+std::optional<Eigen::Vector3d> PlaneReader::read(TableReader& table, const std::string& key, std::string_view meaning) {
+    const auto place = places_.read_needed(table, key, {meaning, "none"});
     if (!place) return std::nullopt;
     if (!plane_) plane_.emplace(*place);
     return on_plane(table, *plane_, key, *place);

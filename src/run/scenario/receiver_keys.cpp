@@ -17,59 +17,65 @@ void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSent
 }
 
 void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::filesystem::path& folder) {
-    receiver.text("board", entry.board);
+    receiver.text("board", entry.board, "a profile of `skyloop boards`, or the path of a board file (`.toml`)");
     if (is_board_path(entry.board)) entry.board = (folder / entry.board).string();
-    receiver.text_or_texts("port", entry.ports);
-    receiver.text("power", entry.power);
+    receiver.text_or_texts("port", entry.ports,
+                           {"wires: pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID, hid:VID:PID, usbip:[HOST:]PORT, "
+                            "tcp:[HOST:]PORT[@BAUD], tcp-connect:HOST:PORT[@BAUD], rfc2217:[HOST:]PORT, file:PATH, -, "
+                            "client:NAME; NAME= before it says which port",
+                            "a pty"});
+    receiver.text("power", entry.power,
+                  {"the actuator that the fault power_cut switches in a live run: relay:, gpio:, hub:, line: or "
+                   "command: (docs/actuators.md)",
+                   "none"});
     for (const char* key :
          {"board", "port", "power", "config", "state_file", "rate_hz", "baud", "constellations", "dual_frequency"})
         entry.told_at[key] = receiver.told_at(key);
-    if (receiver.has("rate_hz")) {
-        double rate = 1;
-        receiver.number("rate_hz", rate, {0.01, 100});
-        entry.rate_hz = rate;
-    }
-    if (receiver.has("baud")) {
-        std::uint32_t baud = 9600;
-        receiver.integer("baud", baud, {300, 4e6});
-        entry.baud = baud;
-    }
-    if (const auto sentences = receiver.choices("sentences", firmware::nmea_sentence_names))
+    receiver.number("rate_hz", entry.rate_hz, {0.01, 100}, {"navigation rate at the factory", "the board's"});
+    receiver.integer("baud", entry.baud, {300, 4e6}, {"bit/s of UART1 at the factory", "the board's"});
+    if (const auto sentences = receiver.choices("sentences", firmware::nmea_sentence_names,
+                                                {"NMEA sentences at the factory, each every epoch", "the board's"}))
         for (const std::size_t index : *sentences)
             add_once(entry.sentences, static_cast<firmware::NmeaSentence>(index));
 }
 
 void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
-    receiver.named_values("config", [&](TableReader& config) { entry.config = read_config_items(config); });
-    read_constellation_list(receiver, "constellations", entry.constellations);
-    receiver.boolean("dual_frequency", entry.dual_frequency);
-    static constexpr std::array<Word<StartKind>, 3> starts{
-        {{"hot", StartKind::hot}, {"warm", StartKind::warm}, {"cold", StartKind::cold}}};
-    receiver.word("start", starts, entry.start);
-    static constexpr std::array<Word<DynamicModel>, 8> models{{{"portable", DynamicModel::portable},
-                                                               {"stationary", DynamicModel::stationary},
-                                                               {"pedestrian", DynamicModel::pedestrian},
-                                                               {"automotive", DynamicModel::automotive},
-                                                               {"sea", DynamicModel::sea},
-                                                               {"airborne-1g", DynamicModel::airborne_1g},
-                                                               {"airborne-2g", DynamicModel::airborne_2g},
-                                                               {"airborne-4g", DynamicModel::airborne_4g}}};
-    receiver.word("dynamic_model", models, entry.dynamic_model);
-    if (receiver.has("export_limits")) {
-        firmware::ExportLimits limits = firmware::ExportLimits::off;
-        receiver.word("export_limits", export_limit_words, limits);
-        entry.export_limits = limits;
-    }
-    receiver.quantity("static_hold_mps", entry.static_hold_below, {0, 100});
+    receiver.named_values(
+        "config", "configuration items that its user has saved in it, by their names, such as `CFG-RATE-MEAS = 100`",
+        [&](TableReader& config) { entry.config = read_config_items(config); });
+    read_constellation_list(receiver, "constellations", entry.constellations,
+                            {"systems that it tracks from the factory on", "the board's"});
+    receiver.boolean("dual_frequency", entry.dual_frequency,
+                     "it tracks the second signal of each system too; false leaves it to the board");
+    receiver.word("start", {{"hot", StartKind::hot}, {"warm", StartKind::warm}, {"cold", StartKind::cold}}, entry.start,
+                  "what it knows at the start: everything; time, place and almanac; nothing");
+    receiver.word("dynamic_model",
+                  {{"portable", DynamicModel::portable},
+                   {"stationary", DynamicModel::stationary},
+                   {"pedestrian", DynamicModel::pedestrian},
+                   {"automotive", DynamicModel::automotive},
+                   {"sea", DynamicModel::sea},
+                   {"airborne-1g", DynamicModel::airborne_1g},
+                   {"airborne-2g", DynamicModel::airborne_2g},
+                   {"airborne-4g", DynamicModel::airborne_4g}},
+                  entry.dynamic_model,
+                  "how it expects to move; a u-blox board withholds a fix beyond its limits of height and speed");
+    read_export_limits(
+        receiver, entry.export_limits,
+        {"a fix above 18 288 m and above 515 m/s is withheld: never, beyond both, beyond one of them", "the board's"});
+    receiver.quantity("static_hold_mps", entry.static_hold_below, {0, 100},
+                      "slower than this, the position is held; 0: never");
 }
 
 void read_place_and_power_keys(TableReader& receiver, ReceiverEntry& entry, const std::filesystem::path& folder) {
-    receiver.boolean("power_up", entry.power_up);
-    std::string state_file;
-    receiver.text("state_file", state_file);
-    if (!state_file.empty()) entry.state_file = folder / state_file;
+    receiver.boolean("power_up", entry.power_up,
+                     "it is switched on at the start of the run; false: it has been on for long");
+    receiver.file_path("state_file", folder, entry.state_file,
+                       {"keeps what the receiver saves for the next run", "none"});
     constexpr double longest_arm_m = 1000;
-    if (const auto offset = receiver.numbers("antenna_offset_m", 3, entry.antenna_offset)) {
+    if (const auto offset = receiver.numbers(
+            "antenna_offset_m", 3, "from the point that follows the trajectory to the antenna: forward, right, down",
+            entry.antenna_offset)) {
         std::copy(offset->begin(), offset->end(), entry.antenna_offset.begin());
         if (std::any_of(offset->begin(), offset->end(), [](double part) { return !(std::abs(part) <= longest_arm_m); }))
             receiver.mistake("antenna_offset_m", fmt::format("is [{0:g}]; expected numbers from -{1:g} to {1:g}",
@@ -80,7 +86,7 @@ void read_place_and_power_keys(TableReader& receiver, ReceiverEntry& entry, cons
 // A name stands for the table in messages and in `base`.
 void read_name(TableReader& receiver, Scenario& scenario) {
     ReceiverEntry& entry = scenario.receivers.back();
-    receiver.text("name", entry.name);
+    receiver.text("name", entry.name, {"what messages and `base` call it", "receiver0, receiver1, …"});
     if (receiver.has("name") && entry.name.empty()) receiver.mistake("name", "is empty; expected a name");
     const std::size_t own = scenario.receivers.size() - 1;
     for (std::size_t i = 0; i < own; ++i)
@@ -92,7 +98,7 @@ void read_name(TableReader& receiver, Scenario& scenario) {
 // @param names of all receivers of the scenario
 void read_base(TableReader& receiver, std::span<const std::string> names, Scenario& scenario) {
     std::string base;
-    receiver.text("base", base);
+    receiver.text("base", base, {"name of the receiver that carries the base antenna of a pair", "none"});
     if (base.empty()) return;
     const auto found = std::find(names.begin(), names.end(), base);
     const auto index = static_cast<std::size_t>(found - names.begin());
@@ -127,14 +133,16 @@ void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContex
         names.push_back(name.empty() ? default_receiver_name(names.size()) : name);
     });
     std::size_t count = 0;
-    top.tables("receiver", [&](TableReader& receiver) {
+    top.tables("receiver", {"the receivers on the vehicle", "one, an ublox-m8 on a pty"}, [&](TableReader& receiver) {
         if (count++ > 0) scenario.receivers.emplace_back();
         read_name(receiver, scenario);
         ReceiverEntry& entry = scenario.receivers.back();
         read_output_keys(receiver, entry, context.folder);
         read_navigation_keys(receiver, entry);
         read_place_and_power_keys(receiver, entry, context.folder);
-        entry.trajectory = read_trajectory_keys(receiver, context, scenario.warnings);
+        entry.trajectory =
+            read_trajectory_keys(receiver, {"where the vehicle is that this receiver rides on", "the scenario's"},
+                                 context, scenario.warnings);
         read_base(receiver, names, scenario);
     });
 }

@@ -165,11 +165,12 @@ toml::source_region place_of_parameter(const toml::table& table, std::string_vie
 
 void apply_changes(toml::table& table, MistakeList& mistakes, std::span<const ScenarioChange> changes) {
     for (const ScenarioChange& change : changes)
-        mistakes.changed(path_of_change(table, change.key, false), change.key, place_of_parameter(table, change.key),
-                         fmt::format("{} = {}", change.key, change.value.toml));
+        mistakes.changed({path_of_change(table, change.key, false), change.key, change.option,
+                          place_of_parameter(table, change.key).begin,
+                          change.option.empty() ? fmt::format("{} = {}", change.key, change.value.toml) : ""});
     for (const ScenarioChange& change : changes)
         if (const std::string missing = apply_change(table, change); !missing.empty())
-            mistakes.add(place_of_parameter(table, change.key),
+            mistakes.add(change.option.empty() ? place_of_parameter(table, change.key) : toml::source_region(),
                          fmt::format("'{}' leads to no key: the scenario has no {}; expected tables, and of a list an "
                                      "entry's place from 0 on, or its name or kind",
                                      change.key, missing));
@@ -237,7 +238,7 @@ ScenarioReading read_with_mistakes(std::string_view text, const std::filesystem:
     scenario.name = file.string();
     scenario.source = text;
     for (const ScenarioChange& change : changes)
-        scenario.source += fmt::format("\n{} = {}", change.key, change.value.toml);
+        if (change.in_source) scenario.source += fmt::format("\n{} = {}", change.key, change.value.toml);
     const auto read = read_toml(
         text, file.string(), [&](TableReader& top) { read_top_keys(top, scenario, file.parent_path()); },
         [&](toml::table& table, MistakeList& mistakes) { apply_changes(table, mistakes, changes); });

@@ -20,6 +20,8 @@ namespace skyloop {
 struct ScenarioChange {
     std::string key;
     CampaignValue value;
+    std::string option{};   ///< that mistakes in it name: "--rate"; empty: the place of its [[campaign.parameter]]
+    bool in_source = true;  ///< it is added to Scenario::source
 };
 
 /// "KEY=VALUE" of the command line: a value as TOML writes it, or a word. Fails with `usage`.

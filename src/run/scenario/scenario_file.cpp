@@ -15,7 +15,8 @@ namespace skyloop {
 namespace {
 
 void read_run_keys(TableReader& run, RunSettings& settings) {
-    const auto start = run.utc("start");
+    const auto start = run.utc("start", {"when the run begins: ISO 8601 in UTC, or \"now\"",
+                                         "now; with navigation data when four satellites first have orbits"});
     if (start == "now") {
         settings.start_now = true;
     } else if (start) {
@@ -25,37 +26,32 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
         else
             run.mistake("start", utc.error().message + ", or \"now\"");
     }
-    if (run.has("duration_s")) {
-        double duration = 1;
-        run.number("duration_s", duration, {std::numeric_limits<double>::min(), longest_run_s});
-        settings.duration = Seconds(duration);
-    }
-    run.integer("seed", settings.seed, NumberRange::not_negative());
-    run.number("speed", settings.speed, {1e-3, 1e6});
+    run.quantity("duration_s", settings.duration, {std::numeric_limits<double>::min(), longest_run_s},
+                 {"length of the run", "until stopped"});
+    run.integer("seed", settings.seed, NumberRange::not_negative(),
+                "the same scenario, seed and inputs give the same bytes");
+    run.number("speed", settings.speed, {1e-3, 1e6}, "`skyloop run` only: simulated seconds per second");
 }
 
 void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
     std::vector<std::string> files;
-    sky.text_or_texts("navigation", files);
+    sky.text_or_texts("navigation", files,
+                      {"navigation files: RINEX 2, 3 or 4, YUMA or SEM almanac, gzip too", "nominal constellation"});
     for (const std::string& file : files) {
         if (file.empty()) sky.mistake("navigation", "is empty; expected the path of a file");
         settings.navigation.push_back(folder / file);
     }
-    sky.boolean("rebase_navigation", settings.rebase_navigation);
-    read_constellation_list(sky, "constellations", settings.constellations);
-    if (sky.has("elevation_mask_deg")) {
-        double mask = 5;
-        sky.number("elevation_mask_deg", mask, {0, 90});
-        settings.elevation_mask = Angle::degrees(mask);
-    }
-    static constexpr std::array<Word<std::optional<EphemerisRule>>, 2> rules{
-        {{"forward", EphemerisRule::forward}, {"nearest", EphemerisRule::nearest}}};
-    sky.word("ephemeris_rule", rules, settings.ephemeris_rule);
-    if (sky.has("ephemeris_validity_s")) {
-        Seconds validity(7200);
-        sky.quantity("ephemeris_validity_s", validity, {1, 14 * 86400.0});
-        settings.ephemeris_validity = validity;
-    }
+    sky.boolean("rebase_navigation", settings.rebase_navigation,
+                "move the data by whole days to the start time, keeping its time of day");
+    read_constellation_list(sky, "constellations", settings.constellations,
+                            {"which systems of the data send", "all; gps and qzss for sensor models"});
+    sky.degrees("elevation_mask_deg", settings.elevation_mask, {0, 90},
+                {"a satellite exactly at the mask is used", "the board's; 5 for sensor models"});
+    sky.word("ephemeris_rule", {{"forward", EphemerisRule::forward}, {"nearest", EphemerisRule::nearest}},
+             settings.ephemeris_rule,
+             {"the newest healthy record that is not of the future, or the nearest one", "by the model"});
+    sky.quantity("ephemeris_validity_s", settings.ephemeris_validity, {1, 14 * 86400.0},
+                 {"largest age of any record", "by the system"});
 }
 
 // What a run may be refused for when it is put together.
@@ -90,23 +86,24 @@ std::string told_place(const Scenario& scenario, std::string_view key, std::stri
 }
 
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
-    top.table("run", [&](TableReader& t) {
+    top.table("run", "when, how long, how fast", [&](TableReader& t) {
         read_run_keys(t, scenario.run);
         remember_places(t, "run", {"speed"}, scenario.told_at);
     });
-    top.table("sky", [&](TableReader& t) {
+    top.table("sky", "which satellites there are", [&](TableReader& t) {
         read_sky_keys(t, scenario.sky, folder);
         remember_places(t, "sky", {"navigation", "rebase_navigation", "constellations"}, scenario.told_at);
     });
     const TrajectoryContext context{read_frame(top), folder};
-    if (auto path = read_trajectory_keys(top, context, scenario.warnings)) scenario.trajectory = std::move(*path);
-    top.table("model", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
-    top.table("atmosphere", [&](TableReader& t) {
+    if (auto path = read_trajectory_keys(top, {"where the vehicle is", "fixed, in Odessa"}, context, scenario.warnings))
+        scenario.trajectory = std::move(*path);
+    top.table("model", "how a fix is made", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
+    top.table("atmosphere", "clouds and rain; and the air of the sensor models", [&](TableReader& t) {
         read_atmosphere_keys(t, scenario, folder);
         scenario.atmosphere_keys = t.keys();
         remember_places(t, "atmosphere", {"tec_source"}, scenario.told_at);
     });
-    top.table("scene", [&](TableReader& t) {
+    top.table("scene", "buildings and ground around the antenna", [&](TableReader& t) {
         read_scene_keys(t, scenario.scene, folder);
         remember_places(t, "scene", {"buildings", "terrain"}, scenario.told_at);
     });
@@ -118,8 +115,9 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     read_campaign(top, scenario.campaign);
 }
 
-void read_constellation_list(TableReader& table, const char* key, std::vector<Constellation>& constellations) {
-    const auto found = table.choices(key, constellation_names);
+void read_constellation_list(TableReader& table, const char* key, std::vector<Constellation>& constellations,
+                             KeyText text) {
+    const auto found = table.choices(key, constellation_names, text);
     if (!found) return;
     constellations.clear();
     for (const std::size_t index : *found)
@@ -142,7 +140,7 @@ Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& fil
     std::optional<TrajectorySettings> trajectory;
     const auto read = read_toml(*text, file.string(), [&](TableReader& top) {
         if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
-        trajectory = read_trajectory_keys(top, {read_frame(top), file.parent_path()}, warnings);
+        trajectory = read_trajectory_keys(top, {}, {read_frame(top), file.parent_path()}, warnings);
         if (trajectory && is_live(*trajectory)) refuse_idle_frame(top);
     });
     if (!read) return fail(read.error());

@@ -1,6 +1,10 @@
 // How a reader of tables notes the keys that it is asked for.
 #include "detail/table_reader.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace skyloop {
 namespace {
 
@@ -41,8 +45,11 @@ KeyEntry entry_of(const ParameterSpec& spec) {
 
 }  // namespace
 
-void TableReader::note(std::string_view key, KeyEntry entry) {
+void TableReader::note(std::string_view key, KeyText text, KeyEntry entry) {
     entry.name = key;
+    if (!text.meaning.empty()) entry.meaning = text.meaning;
+    entry.standard_words = text.standard;
+    if (!text.standard.empty()) entry.standard.reset();
     // Behind a look whether it is there stands a value of no meaning.
     if (recorder_->given() && std::find(asked_for_.begin(), asked_for_.end(), key) != asked_for_.end())
         entry.standard.reset();
@@ -51,30 +58,16 @@ void TableReader::note(std::string_view key, KeyEntry entry) {
     recorder_->note(path_, std::move(entry));
 }
 
-KeyEntry TableReader::number_entry(KeyType type, NumberRange range, std::optional<double> standard) {
-    KeyEntry entry{.type = type, .least = range.least, .most = range.most};
-    if (type == KeyType::whole_numbers) entry.count_least = 1;
-    if (standard) entry.standard = *standard;
-    return entry;
-}
-
-KeyEntry TableReader::numbers_entry(std::size_t count, std::span<const double> standard) {
-    KeyEntry entry{.type = KeyType::numbers, .count_least = count, .count_most = count};
-    if (!standard.empty()) entry.standard = std::vector<double>(standard.begin(), standard.end());
-    return entry;
-}
-
-KeyEntry TableReader::word_entry(std::span<const std::string_view> words, std::string_view standard) {
-    return {.type = KeyType::word, .choices = {words.begin(), words.end()}, .standard = std::string(standard)};
-}
-
-void TableReader::record_inner(std::string_view key, KeyEntry entry, const std::function<void(TableReader&)>& body) {
+void TableReader::record_inner(std::string_view key, KeyText text, KeyEntry entry,
+                               const std::function<void(TableReader&)>& body) {
     static const toml::table nothing;  // readers may keep it until the file has been read
     const std::string path = path_of(key);
-    recorder_->enter(path, entry.type == KeyType::tables);
-    note(key, std::move(entry));
-    TableReader reader(nothing, path, mistakes_, recorder_);
-    body(reader);
+    const bool list = entry.type == KeyType::tables;
+    note(key, text, std::move(entry));
+    recorder_->record(path, list, [&] {
+        TableReader reader(nothing, path, mistakes_, recorder_);
+        body(reader);
+    });
 }
 
 void TableReader::needs_one_of(std::initializer_list<std::string_view> keys, const std::string& sentence) {
@@ -87,16 +80,37 @@ void TableReader::note_not_both(std::string_view key, std::string_view other) {
     if (recording()) recorder_->note_not_both(path_, key, other);
 }
 
+void TableReader::where(bool acts, std::string_view when, const std::function<void()>& body) {
+    for (const std::string& key : given_of(body))
+        if (!acts) mistakes_.idle_keys.push_back(fmt::format("{}: has no effect here; it acts {}", path_of(key), when));
+}
+
+std::vector<std::string> TableReader::given_of(const std::function<void()>& body) {
+    const auto before = static_cast<std::ptrdiff_t>(known_.size());
+    body();
+    std::vector<std::string> given(known_.begin() + before, known_.end());
+    std::erase_if(given, [this](const std::string& key) { return !table_.contains(key); });
+    return given;
+}
+
+void TableReader::not_both(std::string_view key, std::string_view other) {
+    note_not_both(key, other);
+    if (!recording() && has(key) && has(other))
+        mistake(other, fmt::format("stands beside {}; expected one of the two", key));
+}
+
 void TableReader::note_parameters(const std::vector<ParameterSpec>& specs) {
     if (!recording()) return;
     for (const ParameterSpec& spec : specs)
-        note(spec.name, entry_of(spec));
+        note(spec.name, {}, entry_of(spec));
 }
 
-std::optional<std::size_t> TableReader::note_kinds(std::span<const std::string_view> words, std::string_view standard) {
+std::optional<std::size_t> TableReader::note_kinds(std::span<const std::string_view> words, KeyText text,
+                                                   std::string_view standard) {
     if (!recording()) return std::nullopt;
     const auto kind = recorder_->kind(path_, words);
-    note("kind", word_entry(words, standard));
+    note("kind", text,
+         {.type = KeyType::word, .choices = {words.begin(), words.end()}, .standard = std::string(standard)});
     return kind;
 }
 

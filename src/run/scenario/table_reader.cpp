@@ -44,6 +44,16 @@ std::string range_words(NumberRange range, std::string_view noun = "a number") {
     return noun == "a number" ? "a finite number" : std::string(noun);
 }
 
+KeyEntry number_entry(KeyType type, NumberRange range, std::optional<double> standard) {
+    KeyEntry entry{.type = type, .least = range.least, .most = range.most};
+    if (standard) entry.standard = *standard;
+    return entry;
+}
+
+KeyEntry word_entry(std::span<const std::string_view> words, std::string_view standard) {
+    return {.type = KeyType::word, .choices = {words.begin(), words.end()}, .standard = std::string(standard)};
+}
+
 }  // namespace
 
 const toml::node* TableReader::find(std::string_view key) {
@@ -55,13 +65,8 @@ std::string TableReader::path_of(std::string_view key) const {
     return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
 }
 
-void TableReader::mistake(std::string_view key, const std::string& sentence) {
+void TableReader::mistake(std::string_view key, const Error& error) {
     if (recording() && key == "kind") recorder_->refuse_kind(path_);
-    const toml::node* node = table_.get(key);
-    mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), sentence));
-}
-
-void TableReader::mistake_of_file(std::string_view key, const Error& error) {
     const toml::node* node = table_.get(key);
     mistakes_.add(node ? node->source() : table_.source(), fmt::format("{}: {}", path_of(key), error.message),
                   error.code);
@@ -82,31 +87,51 @@ void TableReader::wrong_type(std::string_view key, const toml::node& node, std::
     mistake_at(node, key, fmt::format("is {}; expected {}", type_words(node), expected));
 }
 
-void TableReader::number(std::string_view key, double& value, NumberRange range) {
-    if (recording()) note(key, number_entry(KeyType::number, range, value));
+void TableReader::number(std::string_view key, std::optional<double>& value, NumberRange range, KeyText text) {
+    if (recording()) note(key, text, number_entry(KeyType::number, range, value));
     const toml::node* node = find(key);
     if (!node) return;
     const auto found = node->value<double>();
     if (!found || node->is_boolean()) return wrong_type(key, *node, range_words(range));
-    if (!std::isfinite(*found) || *found < range.least || *found > range.most)
+    if (!std::isfinite(*found) || !range.holds(*found))
         return mistake(key, fmt::format("is {}; expected {}", *found, range_words(range)));
     value = *found;
 }
 
-std::optional<std::int64_t> TableReader::whole_number(std::string_view key, NumberRange range) {
+void TableReader::number(std::string_view key, double& value, NumberRange range, KeyText text) {
+    std::optional<double> found = value;
+    number(key, found, range, text);
+    value = *found;
+}
+
+void TableReader::degrees(std::string_view key, std::optional<Angle>& value, NumberRange range, KeyText text) {
+    std::optional<double> found = value ? std::optional(value->deg()) : std::nullopt;
+    const auto before = found;
+    number(key, found, range, text);
+    if (found != before) value = Angle::degrees(*found);
+}
+
+void TableReader::degrees(std::string_view key, Angle& value, NumberRange range, KeyText text) {
+    std::optional<Angle> found = value;
+    degrees(key, found, range, text);
+    value = *found;
+}
+
+std::optional<std::int64_t> TableReader::whole_number(std::string_view key, NumberRange range, KeyText text,
+                                                      std::optional<double> standard) {
+    if (recording()) note(key, text, number_entry(KeyType::whole_number, range, standard));
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
     const auto* found = node->as_integer();
     const std::string expected = range_words(range, "a whole number");
     if (!found) return wrong_type(key, *node, expected), std::nullopt;
-    const auto number = static_cast<double>(found->get());
-    if (number < range.least || number > range.most)
+    if (!range.holds(static_cast<double>(found->get())))
         return mistake(key, fmt::format("is {}; expected {}", found->get(), expected)), std::nullopt;
     return found->get();
 }
 
-void TableReader::boolean(std::string_view key, bool& value) {
-    if (recording()) note(key, {.type = KeyType::flag, .standard = value});
+void TableReader::boolean(std::string_view key, std::optional<bool>& value, KeyText text) {
+    if (recording()) note(key, text, {.type = KeyType::flag, .standard = value});
     const toml::node* node = find(key);
     if (!node) return;
     const auto* found = node->as_boolean();
@@ -114,8 +139,14 @@ void TableReader::boolean(std::string_view key, bool& value) {
     value = found->get();
 }
 
-void TableReader::text(std::string_view key, std::string& value) {
-    if (recording()) note(key, {.type = KeyType::text, .standard = value});
+void TableReader::boolean(std::string_view key, bool& value, KeyText text) {
+    std::optional<bool> found = value;
+    boolean(key, found, text);
+    value = *found;
+}
+
+void TableReader::text(std::string_view key, std::string& value, KeyText text) {
+    if (recording()) note(key, text, {.type = KeyType::text, .standard = value});
     const toml::node* node = find(key);
     if (!node) return;
     const auto* found = node->as_string();
@@ -123,8 +154,8 @@ void TableReader::text(std::string_view key, std::string& value) {
     value = found->get();
 }
 
-std::optional<std::string> TableReader::utc(std::string_view key) {
-    if (recording()) note(key, {.type = KeyType::time});
+std::optional<std::string> TableReader::utc(std::string_view key, KeyText text) {
+    if (recording()) note(key, text, {.type = KeyType::time});
     const toml::node* node = find(key);
     if (!node) return std::nullopt;
     if (const auto* written = node->as_string()) return written->get();
@@ -142,58 +173,85 @@ std::optional<std::string> TableReader::utc(std::string_view key) {
         minutes == 0 ? "Z" : fmt::format("{}{:02}:{:02}", minutes < 0 ? '-' : '+', size / 60, size % 60));
 }
 
-void TableReader::texts(std::string_view key, std::vector<std::string>& values, std::size_t least) {
-    if (recording()) note(key, {.type = KeyType::texts, .count_least = least});
+std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<const std::string_view> words,
+                                               KeyText text, std::string_view standard) {
+    if (recording() && key == "kind") return note_kinds(words, text, standard);
+    if (recording()) note(key, text, word_entry(words, standard));
     const toml::node* node = find(key);
-    if (!node) return;
+    if (!node) return std::nullopt;
+    const auto* word = node->as_string();
+    if (!word) return wrong_type(key, *node, "a text in quotes"), std::nullopt;
+    const auto found = std::find(words.begin(), words.end(), word->get());
+    if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+    mistake(key, fmt::format("is '{}'; expected one of {}{}", word->get(), fmt::join(words, " "),
+                             did_you_mean(word->get(), words)));
+    return std::nullopt;
+}
+
+bool TableReader::take_list(std::string_view key, const std::string& expected,
+                            const std::function<std::string(const toml::node&)>& take) {
+    const toml::node* node = find(key);
+    if (!node) return false;
     const auto* list = node->as_array();
-    if (!list) return wrong_type(key, *node, "a list of texts");
+    if (!list) return wrong_type(key, *node, expected), false;
+    for (const toml::node& item : *list)
+        if (const std::string wrong = take(item); !wrong.empty())
+            return mistake_at(item, key, fmt::format("holds {}", wrong)), false;
+    return true;
+}
+
+void TableReader::texts(std::string_view key, std::vector<std::string>& values, KeyText text, std::size_t least) {
+    if (recording()) note(key, text, {.type = KeyType::texts, .count_least = least});
     std::vector<std::string> found;
-    for (const toml::node& item : *list) {
+    const std::string expected = "a list of texts";
+    const bool read = take_list(key, expected, [&](const toml::node& item) {
         const auto* word = item.as_string();
-        if (!word) return mistake_at(item, key, fmt::format("holds {}; expected a list of texts", type_words(item)));
+        if (!word) return fmt::format("{}; expected {}", type_words(item), expected);
         found.push_back(word->get());
-    }
+        return std::string();
+    });
+    if (!read) return;
     if (found.size() < least) return mistake(key, "is an empty list; expected at least one text");
     values = std::move(found);
 }
 
-void TableReader::text_or_texts(std::string_view key, std::vector<std::string>& values) {
-    if (recording()) note(key, {.type = KeyType::text_or_texts, .count_least = 1});
+void TableReader::text_or_texts(std::string_view key, std::vector<std::string>& values, KeyText text) {
+    if (recording()) note(key, text, {.type = KeyType::text_or_texts, .count_least = 1});
     const toml::node* node = table_.get(key);
-    if (node == nullptr || !node->is_string()) return texts(key, values);
-    std::string single;
-    text(key, single);
-    values = {single};
+    if (node == nullptr || !node->is_string()) return texts(key, values, text);
+    values = {std::string()};
+    this->text(key, values.front(), text);
 }
 
-std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count,
+std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count, KeyText text,
                                                         std::span<const double> standard) {
-    if (recording()) note(key, numbers_entry(count, standard));
-    const toml::node* node = find(key);
-    if (!node) return std::nullopt;
-    const std::string expected = fmt::format("a list of {} numbers", count);
-    const auto* list = node->as_array();
-    if (!list) return wrong_type(key, *node, expected), std::nullopt;
+    if (recording()) {
+        KeyEntry entry{.type = KeyType::numbers, .count_least = count, .count_most = count};
+        if (!standard.empty()) entry.standard = std::vector<double>(standard.begin(), standard.end());
+        note(key, text, std::move(entry));
+    }
     std::vector<double> values;
-    for (const toml::node& item : *list) {
+    const std::string expected = fmt::format("a list of {} numbers", count);
+    const bool read = take_list(key, expected, [&](const toml::node& item) {
         const auto value = item.is_number() ? item.value<double>() : std::nullopt;
-        if (!value)
-            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
-                   std::nullopt;
-        if (!std::isfinite(*value))
-            return mistake_at(item, key, fmt::format("holds {}; expected {}", *value, expected)), std::nullopt;
+        if (!value) return fmt::format("{}; expected {}", type_words(item), expected);
         values.push_back(*value);
-    }
-    if (values.size() != count) {
-        mistake(key, fmt::format("has {} numbers; expected {}", values.size(), count));
-        return std::nullopt;
-    }
-    return values;
+        return std::isfinite(*value) ? std::string() : fmt::format("{}; expected {}", *value, expected);
+    });
+    if (!read) return std::nullopt;
+    if (values.size() == count) return values;
+    mistake(key, fmt::format("has {} numbers; expected {}", values.size(), count));
+    return std::nullopt;
 }
 
-std::optional<Geodetic> TableReader::place(std::string_view key) {
-    if (recording()) note(key, {.type = KeyType::place, .count_least = 2, .count_most = 3});
+bool TableReader::numbers(std::string_view key, std::span<double> values, KeyText text) {
+    const auto found = numbers(key, values.size(), text, values);
+    if (found) std::copy(found->begin(), found->end(), values.begin());
+    return found.has_value();
+}
+
+std::optional<Geodetic> TableReader::place(std::string_view key, KeyText text) {
+    if (recording()) note(key, text, {.type = KeyType::place, .count_least = 2, .count_most = 3});
     const auto* list = table_.get(key) ? table_.get(key)->as_array() : nullptr;
     if (list && list->size() != 2 && list->size() != 3) {
         (void)find(key);
@@ -202,79 +260,55 @@ std::optional<Geodetic> TableReader::place(std::string_view key) {
                std::nullopt;
     }
     const std::size_t count = list && list->size() == 2 ? 2 : 3;
-    const auto values = numbers(key, count);
+    const auto values = numbers(key, count, text);
     if (!values) return std::nullopt;
     const auto place = place_from_degrees((*values)[0], (*values)[1], count == 3 ? (*values)[2] : 0);
     if (!place) return mistake(key, place.error()), std::nullopt;
     return *place;
 }
 
-std::optional<std::size_t> TableReader::choice(std::string_view key, std::span<const std::string_view> words,
-                                               std::string_view standard) {
-    if (recording() && key == "kind") return note_kinds(words, standard);
-    if (recording()) note(key, word_entry(words, standard));
-    const toml::node* node = find(key);
-    std::string word;
-    text(key, word);
-    if (!node || !node->is_string()) return std::nullopt;
-    const auto found = std::find(words.begin(), words.end(), word);
-    if (found == words.end()) {
-        mistake(key,
-                fmt::format("is '{}'; expected one of {}{}", word, fmt::join(words, " "), did_you_mean(word, words)));
-        return std::nullopt;
-    }
-    return static_cast<std::size_t>(found - words.begin());
-}
-
 std::optional<std::vector<std::size_t>> TableReader::choices(std::string_view key,
-                                                             std::span<const std::string_view> words,
+                                                             std::span<const std::string_view> words, KeyText text,
                                                              std::string_view wanted) {
-    if (recording()) note(key, {.type = KeyType::words, .count_least = 1, .choices = {words.begin(), words.end()}});
-    const toml::node* node = find(key);
-    if (!node) return std::nullopt;
+    if (recording())
+        note(key, text, {.type = KeyType::words, .count_least = 1, .choices = {words.begin(), words.end()}});
     const std::string expected =
         wanted.empty() ? fmt::format("a list of some of {}", fmt::join(words, " ")) : std::string(wanted);
-    const auto* list = node->as_array();
-    if (!list) return wrong_type(key, *node, expected), std::nullopt;
     std::vector<std::size_t> found;
-    for (const toml::node& item : *list) {
+    const bool read = take_list(key, expected, [&](const toml::node& item) {
         const auto* word = item.as_string();
-        if (!word)
-            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
-                   std::nullopt;
+        if (!word) return fmt::format("{}; expected {}", type_words(item), expected);
         const auto known = std::find(words.begin(), words.end(), word->get());
         if (known == words.end())
-            return mistake_at(item, key,
-                              fmt::format("holds '{}'; expected {}{}", word->get(), expected,
-                                          did_you_mean(word->get(), words))),
-                   std::nullopt;
+            return fmt::format("'{}'; expected {}{}", word->get(), expected, did_you_mean(word->get(), words));
         const auto index = static_cast<std::size_t>(known - words.begin());
         if (std::find(found.begin(), found.end(), index) != found.end())
-            return mistake_at(item, key, fmt::format("holds '{}' twice; expected it once", word->get())), std::nullopt;
+            return fmt::format("'{}' twice; expected it once", word->get());
         found.push_back(index);
-    }
+        return std::string();
+    });
+    if (!read) return std::nullopt;
     if (found.empty()) return mistake(key, fmt::format("is an empty list; expected {}", expected)), std::nullopt;
     return found;
 }
 
-std::optional<std::vector<std::int64_t>> TableReader::whole_numbers(std::string_view key, NumberRange range) {
-    if (recording()) note(key, number_entry(KeyType::whole_numbers, range));
-    const toml::node* node = find(key);
-    if (!node) return std::nullopt;
-    const std::string expected = "a list, each entry " + range_words(range, "a whole number");
-    const auto* list = node->as_array();
-    if (!list) return wrong_type(key, *node, expected), std::nullopt;
-    std::vector<std::int64_t> values;
-    for (const toml::node& item : *list) {
-        const auto* value = item.as_integer();
-        if (!value)
-            return mistake_at(item, key, fmt::format("holds {}; expected {}", type_words(item), expected)),
-                   std::nullopt;
-        const auto number = static_cast<double>(value->get());
-        if (number < range.least || number > range.most)
-            return mistake_at(item, key, fmt::format("holds {}; expected {}", value->get(), expected)), std::nullopt;
-        values.push_back(value->get());
+std::optional<std::vector<std::int64_t>> TableReader::whole_numbers(std::string_view key, NumberRange range,
+                                                                    KeyText text) {
+    if (recording()) {
+        KeyEntry entry = number_entry(KeyType::whole_numbers, range, std::nullopt);
+        entry.count_least = 1;
+        note(key, text, std::move(entry));
     }
+    const std::string expected = "a list, each entry " + range_words(range, "a whole number");
+    std::vector<std::int64_t> values;
+    const bool read = take_list(key, expected, [&](const toml::node& item) {
+        const auto* value = item.as_integer();
+        if (!value) return fmt::format("{}; expected {}", type_words(item), expected);
+        values.push_back(value->get());
+        const bool good = range.holds(static_cast<double>(value->get()));
+        return good ? std::string() : fmt::format("{}; expected {}", value->get(), expected);
+    });
+    if (!read) return std::nullopt;
     if (values.empty()) return mistake(key, "is an empty list; expected " + expected), std::nullopt;
     return values;
 }
@@ -286,8 +320,8 @@ std::vector<std::string> TableReader::keys() const {
     return names;
 }
 
-void TableReader::table(std::string_view key, const std::function<void(TableReader&)>& body) {
-    if (recording()) return record_inner(key, {.type = KeyType::table}, body);
+void TableReader::table(std::string_view key, KeyText text, const std::function<void(TableReader&)>& body) {
+    if (recording()) return record_inner(key, text, {.type = KeyType::table}, body);
     const toml::node* node = find(key);
     if (!node) return;
     const auto* inner = node->as_table();
@@ -297,14 +331,15 @@ void TableReader::table(std::string_view key, const std::function<void(TableRead
     reader.finish();
 }
 
-void TableReader::named_values(std::string_view key, const std::function<void(TableReader&)>& body) {
-    if (recording()) return note(key, {.type = KeyType::named_values});
-    table(key, body);
+void TableReader::named_values(std::string_view key, KeyText text, const std::function<void(TableReader&)>& body) {
+    if (recording()) return note(key, text, {.type = KeyType::named_values});
+    table(key, text, body);
 }
 
-void TableReader::tables(std::string_view key, const std::function<void(TableReader&)>& body, std::size_t fewest) {
+void TableReader::tables(std::string_view key, KeyText text, const std::function<void(TableReader&)>& body,
+                         std::size_t fewest) {
     if (recording())
-        return record_inner(key, {.type = KeyType::tables, .count_least = fewest, .needed = fewest > 0}, body);
+        return record_inner(key, text, {.type = KeyType::tables, .count_least = fewest, .needed = fewest > 0}, body);
     const toml::node* node = find(key);
     if (!node) return;
     const auto* list = node->as_array();

@@ -73,22 +73,22 @@ std::optional<ParameterValue> TableReader::value(std::string_view key) {
     return std::nullopt;
 }
 
-const toml::node* TableReader::node(std::string_view key, KeyType type) {
-    if (recording()) note(key, {.type = type, .count_least = 1});
+const toml::node* TableReader::node(std::string_view key, KeyType type, KeyText text) {
+    if (recording()) note(key, text, {.type = type, .count_least = 1});
     return find(key);
 }
 
 std::string TableReader::told_at(std::string_view key) const {
     const toml::node* node = table_.get(key);
-    const std::string path = path_of(key);
-    return mistakes_.told_at(node ? node->source() : table_.source(), path) + path + ": ";
+    return mistakes_.told(node ? node->source() : table_.source(), path_of(key) + ": ");
 }
 
-void TableReader::file_path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& value) {
+void TableReader::file_path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& value,
+                            KeyText text) {
     std::string path;
-    text(key, path);
-    if (path.empty() && !recording() && table_.contains(key)) mistake(key, "is empty; expected the path of a file");
-    value = folder / path;
+    this->text(key, path, text);
+    if (!path.empty()) value = folder / path;
+    if (path.empty() && table_[key].is_string()) mistake(key, "is empty; expected the path of a file");
 }
 
 }  // namespace skyloop

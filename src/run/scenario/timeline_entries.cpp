@@ -24,11 +24,11 @@ struct EntryMistakes {
 };
 
 template <class Kind>
-const Kind* read_kind(TableReader& table, const std::vector<Kind>& kinds) {
+const Kind* read_kind(TableReader& table, KeyText text, const std::vector<Kind>& kinds) {
     std::vector<std::string_view> names;
     for (const Kind& kind : kinds)
         names.push_back(kind.name);
-    const auto recorded = table.note_kinds(names);
+    const auto recorded = table.note_kinds(names, text);
     table.needs_one_of({"kind"}, fmt::format("has no kind; expected one of {}", fmt::join(names, ", ")));
     if (recorded) return &kinds[*recorded];
     std::string name;
@@ -111,9 +111,9 @@ void name_entry(TimelineEntry& entry, const std::string& kind, const std::vector
     entry.name = default_entry_name(kind, names);
 }
 
-std::vector<std::size_t> read_receiver_choice(TableReader& table, const Scenario& scenario) {
+std::vector<std::size_t> read_receiver_choice(TableReader& table, const Scenario& scenario, std::string_view meaning) {
     std::vector<std::string> names, known;
-    table.text_or_texts("receiver", names);
+    table.text_or_texts("receiver", names, {meaning, "all"});
     for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
         known.push_back(receiver_name(scenario, i));
     std::vector<std::size_t> chosen;
@@ -127,10 +127,10 @@ std::vector<std::size_t> read_receiver_choice(TableReader& table, const Scenario
 }
 
 void read_fault(TableReader& table, Scenario& scenario) {
-    const FaultKind* kind = read_kind(table, fault_kinds());
+    const FaultKind* kind = read_kind(table, "which fault, see docs/faults.md", fault_kinds());
     FaultEntry entry;
     entry.told_at = table.told_at();
-    entry.receivers = read_receiver_choice(table, scenario);
+    entry.receivers = read_receiver_choice(table, scenario, "names of the receivers that it is for");
     GivenKeys given = given_keys(table, timeline_keys());
     entry.when = read_times(table, timeline_keys(), given.timeline);
     if (kind != nullptr) {
@@ -151,7 +151,7 @@ void read_fault(TableReader& table, Scenario& scenario) {
 }
 
 void read_command(TableReader& table, Scenario& scenario) {
-    const CommandKind* kind = read_kind(table, command_kinds());
+    const CommandKind* kind = read_kind(table, "which command, see docs/faults.md", command_kinds());
     CommandEntry entry;
     entry.told_at = table.told_at();
     const GivenKeys given = given_keys(table, timeline_keys_of_commands());
@@ -166,7 +166,7 @@ void read_command(TableReader& table, Scenario& scenario) {
             table.refuse("receiver",
                          fmt::format("'{}' is not for one receiver alone; expected no 'receiver'", kind->name));
         } else if (table.has("receiver")) {
-            const auto chosen = read_receiver_choice(table, scenario);
+            const auto chosen = read_receiver_choice(table, scenario, "name of the receiver that it is for");
             if (chosen.size() == 1)
                 entry.command.receivers = {receiver_name(scenario, chosen.front())};
             else if (chosen.size() < scenario.receivers.size())
@@ -226,11 +226,11 @@ std::vector<TimelineEntry> timeline_of(const Scenario& scenario) {
 
 void read_timeline(TableReader& top, Scenario& scenario) {
     EntryMistakes mistakes;
-    top.tables("fault", [&](TableReader& table) {
+    top.tables("fault", "what goes wrong; lasts (docs/failsafe.md)", [&](TableReader& table) {
         mistakes.faults.push_back(table.mistake_later());
         read_fault(table, scenario);
     });
-    top.tables("command", [&](TableReader& table) {
+    top.tables("command", "what happens once (docs/failsafe.md)", [&](TableReader& table) {
         mistakes.commands.push_back(table.mistake_later());
         read_command(table, scenario);
     });

@@ -40,7 +40,7 @@ void read_kind(const KindReading& reading) {
     // Waypoints come first of the shapes, and are one of the kinds above, too.
     names.insert(names.end(), shapes.begin() + 1, shapes.end());
     names.emplace_back("sequence");
-    const auto kind = reading.table.choice("kind", names);
+    const auto kind = reading.table.choice("kind", names, "the shape of the way");
     reading.table.needs_one_of({"kind"},
                                fmt::format("has no kind; expected kind = \"{}\"", fmt::join(names, "\", \"")));
     if (!kind) {
@@ -58,27 +58,27 @@ void read_kind(const KindReading& reading) {
 
 std::optional<LevelFrame> read_frame(TableReader& top) {
     std::optional<LevelFrame> frame;
-    top.table("frame", [&](TableReader& table) {
+    top.table("frame", "where the coordinates of a game level lie on the Earth", [&](TableReader& table) {
         LevelPlacement placement;
-        const auto origin = table.place("origin");
+        const auto origin = table.place("origin", "of the level: latitude, longitude, height");
         table.needs_one_of({"origin"}, "has no origin; expected origin = [latitude, longitude, height]");
         if (origin) placement.origin = *origin;
-        double yaw = 0;
-        table.number("yaw_deg", yaw, {-360, 360});
-        placement.yaw = Angle::degrees(yaw);
-        table.quantity("unit_m", placement.unit, {1e-6, 1e6});
-        table.boolean("left_handed", placement.left_handed);
-        table.quantity("reach_m", placement.reach, NumberRange::positive());
+        table.degrees("yaw_deg", placement.yaw, {-360, 360}, "azimuth of the level's X axis, clockwise from north");
+        table.quantity("unit_m", placement.unit, {1e-6, 1e6}, "length of one level unit; 0.01 for centimetres");
+        table.boolean("left_handed", placement.left_handed, "true: Y points to the right of X");
+        table.quantity("reach_m", placement.reach, NumberRange::positive(),
+                       "a warning names points further from the origin, where a plane leaves the curved Earth");
         frame.emplace(placement);
     });
     return frame;
 }
 
-std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, const TrajectoryContext& context,
+std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, KeyText text,
+                                                       const TrajectoryContext& context,
                                                        std::vector<std::string>& warnings) {
     std::optional<TrajectorySettings> trajectory;
     PlaceReader places(context.level, warnings);
-    parent.table("trajectory", [&](TableReader& table) {
+    parent.table("trajectory", text, [&](TableReader& table) {
         trajectory.emplace();
         read_kind({table, places, context.folder, *trajectory});
     });

@@ -59,7 +59,7 @@ TEST(ScenarioCampaign, SaysWhereAMistakeIs) {
     EXPECT_THAT(campaign_mistake("seeds = 2000000\n"), HasSubstr("expected a whole number from 1 to 1000000"));
     EXPECT_THAT(campaign_mistake("sample = 2\n"), HasSubstr("did you mean 'samples'"));
     EXPECT_THAT(campaign_mistake("seed_list = [1, 1]\n"), HasSubstr("holds 1 twice"));
-    EXPECT_THAT(campaign_mistake("seeds = 2\nseed_list = [1]\n"), HasSubstr("expected one of them"));
+    EXPECT_THAT(campaign_mistake("seeds = 2\nseed_list = [1]\n"), HasSubstr("expected one of the two"));
     EXPECT_THAT(campaign_mistake("samples = 3\n"), HasSubstr("is of designs that draw"));
     EXPECT_THAT(campaign_mistake("design = \"random\"\n"), HasSubstr("expected samples = their number"));
     EXPECT_THAT(campaign_mistake("[[campaign.parameter]]\nkey = \"run.speed\"\nuniform = [1, 2]\n"),

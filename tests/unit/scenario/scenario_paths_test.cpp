@@ -137,7 +137,7 @@ TEST(ScenarioPaths, AStepHasItsOwnVehicle) {
 }
 
 TEST(ScenarioPaths, TellsWhatCannotBe) {
-    EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"orbit\""), HasSubstr("has no place; expected centre = [latitude"));
+    EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"orbit\""), HasSubstr("has no centre; expected centre = [latitude"));
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"orbit\"\ncentre = [47, 8]\nvehicle = \"plane\"\nradius_m = 5"),
                 HasSubstr("test.toml:1:1: [trajectory] its tightest turn, of 5.0 m radius, allows 7 m/s"));
     EXPECT_THAT(mistakes_of(waypoints_with("vehicle = \"plane\"")),

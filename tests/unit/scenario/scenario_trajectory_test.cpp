@@ -152,8 +152,9 @@ TEST(ScenarioTrajectory, RefusesIncompletePaths) {
                                    testing::Not(HasSubstr("unknown key"))));
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"\"\nat = [46, 30]"),
                 HasSubstr("test.toml:2:8: trajectory.kind: is ''"));
-    EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"fixed\""), HasSubstr("[trajectory] kind \"fixed\" has no place"));
-    EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"circle\""), HasSubstr("kind \"circle\" has no centre"));
+    EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"fixed\""),
+                HasSubstr("[trajectory] has no place; expected at = [latitude, longitude"));
+    EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"circle\""), HasSubstr("[trajectory] has no centre"));
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"waypoints\""), HasSubstr("has 0 waypoints; expected two or more"));
     EXPECT_THAT(mistakes_of("[trajectory]\nkind = \"waypoints\"\nwaypoint = [{ at = [1, 2] }]"),
                 HasSubstr("has 1 waypoints; expected two or more"));

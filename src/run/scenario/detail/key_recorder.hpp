@@ -1,6 +1,7 @@
 /// Notes what the readers of a file ask for, when they are let read nothing.
 #pragma once
 
+#include <functional>
 #include <initializer_list>
 #include <map>
 #include <optional>
@@ -15,20 +16,16 @@
 
 namespace skyloop {
 
-/// One reading shows the keys of one branch. So there are many: with every key said to be there and with none, and with
-/// each word of `kind` in turn, of all tables at once; a table within one that has kinds has each of its own with each
-/// of that one's.
+/// One reading shows the keys of one branch. So each table is read once for each word of its `kind`, and the whole with
+/// every key said to be there and with none.
 class KeyRecorder {
 public:
-    /// @param given what has() answers
-    /// @param turn which word of `kind` every table is said to have; nothing: none, to learn which tables have kinds
-    void begin(bool given, std::optional<std::size_t> turn);
+    /// @param given what has() answers from here on
+    void begin(bool given) { given_ = given; }
     [[nodiscard]] bool given() const { return given_; }
-    /// How many turns there are.
-    [[nodiscard]] std::size_t turns() const;
 
-    /// A table is about to be read.
-    void enter(const std::string& path, bool list);
+    /// Calls `body`, which reads the table: without a kind, and with each that it then names.
+    void record(const std::string& path, bool list, const std::function<void()>& body);
     void note(const std::string& path, KeyEntry entry);
     void note_one_of(const std::string& path, std::initializer_list<std::string_view> keys);
     void note_not_both(const std::string& path, std::string_view key, std::string_view other);
@@ -46,23 +43,20 @@ private:
     struct Noted {
         KeyTable table{};
         std::vector<std::string> words{};  // of `kind`
+        std::string kind{};                // the one that is read with; empty: none
+        bool names_kinds = false;          // the reader has named the words
         std::set<std::string> refused{};   // of them
         std::set<std::string> looked_for{};
         std::set<std::pair<std::string, std::string>> seen{};  // kind, key
         std::vector<std::string> order{};                      // of names, as a reader asks that finds all of them
+        // What a reader asks for that has no kind, and needs one, is not of all kinds.
+        [[nodiscard]] bool is_waiting() const { return names_kinds && kind.empty(); }
     };
-    Noted& of(const std::string& path);
-    // For how many turns a table keeps a word: until those above it have had all of theirs.
-    [[nodiscard]] std::size_t turns_of_one_word(const std::string& path) const;
-    // The word that is read with, "" in a table without kinds; nothing: the table has kinds, and this is the turn of
-    // none.
-    [[nodiscard]] std::optional<std::string> kind_of(const Noted& noted) const;
     [[nodiscard]] static KeyTable finished(const Noted& noted);
     void add_with_inner(const std::string& path, std::vector<KeyTable>& tables) const;
-    void add_rule(std::vector<KeyRule>& rules, const Noted& noted, KeyRule rule) const;
+    static void add_rule(std::vector<KeyRule>& rules, const Noted& noted, KeyRule rule);
 
     bool given_ = false;
-    std::optional<std::size_t> turn_;
     std::map<std::string, Noted> noted_;
 };
 

@@ -13,10 +13,6 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
 
 /// @param folder that paths are relative to
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
-/// Tells of each of `keys` that was given that it cannot act. @param name of the table within model.modern
-/// @param acts when it does: "with truth = \"constant\""
-void tell_idle(TableReader& table, ModernSettings& settings, std::string_view name,
-               std::initializer_list<std::string_view> keys, std::string_view acts);
 /// Those of the world: air, antenna, interference.
 void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
 void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder);
@@ -24,13 +20,18 @@ void read_model_keys(TableReader& model, ModelSettings& settings, const std::fil
 void read_atmosphere_keys(TableReader& atmosphere, Scenario& scenario, const std::filesystem::path& folder);
 
 /// Reads a list of systems, as `constellations` of a scenario's [sky] or a board's [navigation].
-void read_constellation_list(TableReader& table, const char* key, std::vector<Constellation>& constellations);
+void read_constellation_list(TableReader& table, const char* key, std::vector<Constellation>& constellations,
+                             KeyText text = {});
 
-/// Of `export_limits`, of boards and receivers.
-inline constexpr std::array<Word<firmware::ExportLimits>, 3> export_limit_words{
-    {{"off", firmware::ExportLimits::off},
-     {"and", firmware::ExportLimits::both_exceeded},
-     {"or", firmware::ExportLimits::either_exceeded}}};
+/// Of boards and receivers. @param limits the latter's may be nothing
+template <class Limits>
+void read_export_limits(TableReader& table, Limits& limits, KeyText text = {}) {
+    using firmware::ExportLimits;
+    table.word(
+        "export_limits",
+        {{"off", ExportLimits::off}, {"and", ExportLimits::both_exceeded}, {"or", ExportLimits::either_exceeded}},
+        limits, text);
+}
 
 /// What trajectories of one file share.
 struct TrajectoryContext {
@@ -64,7 +65,8 @@ void read_campaign(TableReader& top, std::optional<CampaignSettings>& campaign);
 std::optional<LevelFrame> read_frame(TableReader& top);
 /// Reads the table `trajectory` within another; nothing when it is not there.
 /// @param warnings what a reader should be told is added
-std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, const TrajectoryContext& context,
+std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, KeyText text,
+                                                       const TrajectoryContext& context,
                                                        std::vector<std::string>& warnings);
 
 }  // namespace skyloop

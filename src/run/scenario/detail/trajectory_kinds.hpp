@@ -21,7 +21,9 @@ public:
         : level_(level), warnings_(warnings) {}
 
     // `key` = [lat, lon, height], or `key`_level = [x, y, z].
-    std::optional<Geodetic> read(TableReader& table, const std::string& key);
+    std::optional<Geodetic> read(TableReader& table, const std::string& key, KeyText text);
+    // The same; neither is a mistake. @param text "place": what the table then has not
+    std::optional<Geodetic> read_needed(TableReader& table, const std::string& key, KeyText text);
     void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }
 
 private:
@@ -42,8 +44,8 @@ std::optional<Eigen::Vector3d> on_plane(TableReader& table, const GeodesicPlane&
 class PlaneReader {
 public:
     explicit PlaneReader(PlaceReader& places) : places_(places) {}
-    // As PlaceReader::read(); east and north of the origin and height, m.
-    std::optional<Eigen::Vector3d> read(TableReader& table, const std::string& key);
+    // As PlaceReader::read_needed(); east and north of the origin and height, m.
+    std::optional<Eigen::Vector3d> read(TableReader& table, const std::string& key, std::string_view meaning);
     // Nothing before the first place.
     [[nodiscard]] const std::optional<GeodesicPlane>& plane() const { return plane_; }
 
