@@ -1,14 +1,22 @@
-// The keys of the shapes of generated paths.
+// The keys of the shapes of generated paths, and of vehicles.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
 #include "detail/trajectory_kinds.hpp"
 
 namespace skyloop {
 namespace {
 
-using WishFound = std::optional<PathWish>;
+// Where the path is; marks the reading when that is missing.
+Eigen::Vector3d read_spot(ShapeReading& r, TableReader& table, const std::string& key, std::string_view meaning) {
+    const auto spot = r.places.read(table, key, meaning);
+    r.whole = r.whole && spot;
+    return spot.value_or(Eigen::Vector3d::Zero());
+}
 
 void read_angle(TableReader& table, std::string_view key, double& radians, KeyText text) {
     Angle angle = Angle::radians(radians);
@@ -16,93 +24,85 @@ void read_angle(TableReader& table, std::string_view key, double& radians, KeyTe
     radians = angle.rad();
 }
 
-WishFound read_driven_waypoints(const ShapeReading& r) {
+PathWish read_driven_waypoints(ShapeReading& r) {
     read_speed_and_vehicle(r.table, r.vehicle);
     WaypointWish wish;
     wish.vehicle = r.vehicle;
     wish.heading = r.heading.rad();
-    bool whole = true;
     read_waypoint_tables(r.table, [&](TableReader& row) {
         Waypoint corner;
         corner.speed = MetresPerSecond(wish.waypoints.empty() ? r.vehicle.along.speed : wish.waypoints.back().speed);
-        const auto place = r.places.read(row, "at", "place");
-        whole = whole && place;
+        const auto place = read_spot(r, row, "at", "place");
         read_waypoint_motion(row, corner);
-        wish.waypoints.push_back({place.value_or(Eigen::Vector3d::Zero()), corner.speed.value(), corner.hold.value()});
+        wish.waypoints.push_back({place, corner.speed.value(), corner.hold.value()});
     });
-    if (!whole || wish.waypoints.size() < 2) return std::nullopt;
+    r.whole = r.whole && wish.waypoints.size() >= 2;
     return wish;
 }
 
-// What laps have in common; false when their centre is missing.
-bool read_laps(const ShapeReading& r, LapWish& lap) {
-    const auto centre = r.places.read(r.table, "centre", "centre");
+// What laps have in common.
+void read_laps(ShapeReading& r, LapWish& lap) {
+    lap.centre = read_spot(r, r.table, "centre", "centre");
     read_speed_and_vehicle(r.table, r.vehicle);
     lap.vehicle = r.vehicle;
-    lap.centre = centre.value_or(Eigen::Vector3d::Zero());
     lap.heading = r.heading.rad();
     r.table.integer("laps", lap.laps, {0, 1e6}, "after which it comes to rest; 0: it never does");
-    return centre.has_value();
 }
 
-WishFound read_orbit(const ShapeReading& r) {
+PathWish read_orbit(ShapeReading& r) {
     OrbitWish wish;
-    const bool whole = read_laps(r, wish.lap);
+    read_laps(r, wish.lap);
     r.table.number("radius_m", wish.radius, {0.1, 1e6}, "of the circle");
     read_angle(r.table, "start_azimuth_deg", wish.start_azimuth,
                "from the centre to the place at the start, clockwise from north");
     r.table.boolean("anticlockwise", wish.anticlockwise, "seen from above");
     r.table.number("climb_m", wish.climb, {-1e5, 1e5}, "change of height over all laps");
-    return whole ? WishFound(wish) : std::nullopt;
+    return wish;
 }
 
-WishFound read_racetrack(const ShapeReading& r) {
+PathWish read_racetrack(ShapeReading& r) {
     RacetrackWish wish;
-    const bool whole = read_laps(r, wish.lap);
+    read_laps(r, wish.lap);
     r.table.number("length_m", wish.straight, {0.1, 1e6}, "of the straights");
     r.table.number("radius_m", wish.radius, {0.1, 1e6}, {"of the turns", "the smallest at its speed"});
-    return whole ? WishFound(wish) : std::nullopt;
+    return wish;
 }
 
-WishFound read_figure_eight(const ShapeReading& r) {
+PathWish read_figure_eight(ShapeReading& r) {
     FigureEightWish wish;
-    const bool whole = read_laps(r, wish.lap);
+    read_laps(r, wish.lap);
     double length = 2 * wish.half_length;
     r.table.number("length_m", length, {0.1, 1e6}, "of the whole eight");
     wish.half_length = length / 2;
-    return whole ? WishFound(wish) : std::nullopt;
+    return wish;
 }
 
-WishFound read_lawnmower(const ShapeReading& r) {
+PathWish read_lawnmower(ShapeReading& r) {
     LawnmowerWish wish;
-    const auto corner = r.places.read(r.table, "at", "place");
+    wish.corner = read_spot(r, r.table, "at", "place");
     read_speed_and_vehicle(r.table, r.vehicle);
     wish.vehicle = r.vehicle;
     wish.heading = r.heading.rad();
     r.table.number("length_m", wish.length, {0.1, 1e6}, "of the lines");
     r.table.number("spacing_m", wish.spacing, {0.01, 1e5}, "from line to line, each to the right of the one before");
     r.table.integer("lines", wish.lines, {1, 10000}, "how many");
-    if (!corner) return std::nullopt;
-    wish.corner = *corner;
     return wish;
 }
 
-WishFound read_hover(const ShapeReading& r) {
+PathWish read_hover(ShapeReading& r) {
     HoverWish wish;
-    const auto place = r.places.read(r.table, "at", "place");
+    wish.place = read_spot(r, r.table, "at", "place");
     wish.heading = r.heading.rad();
     r.table.number("sway_m", wish.sway, {0, 100}, "root mean square on each horizontal axis, half of it upward");
     r.table.number("wind_mps", wish.wind, {0, 100}, "wind that it leans into");
     read_angle(r.table, "wind_from_deg", wish.wind_from, "where the wind comes from, clockwise from north");
-    if (!place) return std::nullopt;
-    wish.place = *place;
     return wish;
 }
 
-WishFound read_float(const ShapeReading& r) {
+PathWish read_float(ShapeReading& r) {
     FloatWish wish;
     r.vehicle = usual_limits(VehicleClass::boat);
-    const auto place = r.places.read(r.table, "at", "place");
+    wish.place = read_spot(r, r.table, "at", "place");
     wish.heading = r.heading.rad();
     r.table.number("speed_mps", wish.speed, {0, 100}, "through the water, in the direction of the heading");
     r.table.number("wave_height_m", wish.wave_height, {0, 30},
@@ -111,15 +111,13 @@ WishFound read_float(const ShapeReading& r) {
     read_angle(r.table, "wave_from_deg", wish.wave_from, "where the waves come from, clockwise from north");
     r.table.number("current_mps", wish.current, {0, 100}, "that sets the boat");
     read_angle(r.table, "current_to_deg", wish.current_to, "where the current goes, clockwise from north");
-    if (!place) return std::nullopt;
-    wish.place = *place;
     return wish;
 }
 
-WishFound read_drive(const ShapeReading& r) {
+PathWish read_drive(ShapeReading& r) {
     DriveWish wish;
     r.vehicle = usual_limits(VehicleClass::car);
-    const auto centre = r.places.read(r.table, "centre", "centre");
+    wish.centre = read_spot(r, r.table, "centre", "centre");
     read_speed_and_vehicle(r.table, r.vehicle);
     wish.vehicle = r.vehicle;
     wish.heading = r.heading.rad();
@@ -127,16 +125,14 @@ WishFound read_drive(const ShapeReading& r) {
     r.table.number("block_m", wish.block, {1, 1e5}, "from crossing to crossing");
     r.table.number("duration_s", wish.seconds, {1, 1e7}, "about how long it drives");
     r.table.number("stops", wish.stops, {0, 1}, "share of the crossings at which it waits 5 to 40 s");
-    if (!centre) return std::nullopt;
-    wish.centre = *centre;
     return wish;
 }
 
-WishFound read_rocket(const ShapeReading& r) {
+PathWish read_rocket(ShapeReading& r) {
     static constexpr std::array<std::string_view, 2> presets{"rocket_1km", "rocket_30km_M3"};
     RocketWish wish;
     r.vehicle = usual_limits(VehicleClass::rocket);
-    const auto pad = r.places.read(r.table, "at", "place");
+    wish.pad = read_spot(r, r.table, "at", "place");
     wish.heading = r.heading.rad();
     if (const auto preset =
             r.table.choice("preset", presets, {"a known flight, whose values the other keys change", "none"}))
@@ -148,8 +144,6 @@ WishFound read_rocket(const ShapeReading& r) {
                    "falling speed at sea level under the first parachute, from the top on");
     r.table.number("main_mps", wish.main, {1, 100}, "the same under the second one");
     r.table.number("main_below_m", wish.main_below, {0, 1e5}, "height above the pad at which the second one opens");
-    if (!pad) return std::nullopt;
-    wish.pad = *pad;
     return wish;
 }
 
@@ -167,11 +161,11 @@ void read_winds(TableReader& table, std::vector<WindLayer>& winds) {
                  });
 }
 
-WishFound read_balloon(const ShapeReading& r) {
+PathWish read_balloon(ShapeReading& r) {
     static constexpr std::array<std::string_view, 1> presets{"balloon_32km"};
     BalloonWish wish;
     r.vehicle = usual_limits(VehicleClass::balloon);
-    const auto place = r.places.read(r.table, "at", "place");
+    wish.place = read_spot(r, r.table, "at", "place");
     wish.heading = r.heading.rad();
     if (const auto preset =
             r.table.choice("preset", presets, {"a known flight, whose values the other keys change", "none"}))
@@ -180,14 +174,12 @@ WishFound read_balloon(const ShapeReading& r) {
     r.table.number("burst_m", wish.burst, {100, 60000}, "height above the ellipsoid");
     r.table.number("descent_mps", wish.descent, {1, 100}, "falling speed at sea level under the parachute");
     read_winds(r.table, wish.winds);
-    if (!place) return std::nullopt;
-    wish.place = *place;
     return wish;
 }
 
 struct ShapeKind {
     std::string_view name;
-    WishFound (*read)(const ShapeReading&);
+    PathWish (*read)(ShapeReading&);
     bool dice = false;
 };
 constexpr std::array<ShapeKind, 10> shape_kinds{{{"waypoints", read_driven_waypoints},
@@ -207,6 +199,20 @@ constexpr auto names_of_shapes = [] {
         names[i] = shape_kinds[i].name;
     return names;
 }();
+
+void read_turn_keys(TableReader& table, VehicleLimits& vehicle) {
+    constexpr double gravity_mps2 = 9.80665;
+    table.number("lateral_mps2", vehicle.lateral, {1e-3, 500}, {"acceleration in turns", "the vehicle's"});
+    std::optional<Angle> bank;
+    table.degrees("bank_deg", bank, {1, 85}, {"bank in turns, which gives lateral_mps2", "none"});
+    if (bank) vehicle.lateral = gravity_mps2 * std::tan(bank->rad());
+    table.not_both("lateral_mps2", "bank_deg");
+    table.number("turn_time_s", vehicle.turn_ramp, {0, 60},
+                 {"until a turn has its full acceleration: rolling in, steering", "the vehicle's"});
+    table.number("turn_radius_m", vehicle.radius, {0, 1e6}, {"smallest", "the vehicle's"});
+    table.number("corner_m", vehicle.corner, {1e-3, 1e6},
+                 {"how far before a waypoint the turn there may begin", "the vehicle's"});
+}
 
 }  // namespace
 
@@ -229,10 +235,37 @@ std::optional<Eigen::Vector3d> PlaneReader::read(TableReader& table, const std::
 
 std::span<const std::string_view> path_shape_names() { return names_of_shapes; }
 
-std::optional<PathWish> read_path_shape(std::size_t kind, const ShapeReading& reading) {
-    return shape_kinds.at(kind).read(reading);
+std::optional<PathWish> read_path_shape(std::size_t kind, ShapeReading reading) {
+    PathWish wish = shape_kinds.at(kind).read(reading);
+    return reading.whole ? std::optional(std::move(wish)) : std::nullopt;
 }
 
 bool has_dice(std::size_t kind) { return shape_kinds.at(kind).dice; }
+
+void read_vehicle_keys(TableReader& table, VehicleLimits& vehicle) {
+    std::array<std::string_view, driven_vehicles.size()> names;
+    std::transform(driven_vehicles.begin(), driven_vehicles.end(), names.begin(), vehicle_name);
+    if (const auto kind = table.choice("vehicle", names,
+                                       {"who goes: rounds corners, speeds up, leans (docs/paths.md); waypoints without "
+                                        "any key of a vehicle run at constant speed from corner to corner",
+                                        "multirotor; of drive car"}))
+        vehicle = usual_limits(driven_vehicles.at(*kind));
+    table.number("acceleration_mps2", vehicle.along.acceleration, {1e-3, 500}, {"along the way", "the vehicle's"});
+    table.number("jerk_mps3", vehicle.along.jerk, {1e-3, 1e4},
+                 {"change of the acceleration along the way", "the vehicle's"});
+    read_turn_keys(table, vehicle);
+    table.number("slowest_mps", vehicle.slowest, {0, 12000},
+                 {"speed on the way; what has one cannot stop there", "the vehicle's"});
+    table.number("climb_mps", vehicle.climb, {1e-3, 12000}, {"largest", "the vehicle's"});
+    table.number("sink_mps", vehicle.sink, {1e-3, 12000}, {"largest", "the vehicle's"});
+    Angle steepest = Angle::radians(vehicle.steepest);
+    table.degrees("steepest_deg", steepest, {0.1, 90}, {"slope of the way", "the vehicle's"});
+    vehicle.steepest = steepest.rad();
+}
+
+void read_speed_and_vehicle(TableReader& table, VehicleLimits& vehicle) {
+    read_vehicle_keys(table, vehicle);
+    table.number("speed_mps", vehicle.along.speed, {1e-3, 12000}, {"along the way", "the vehicle's"});
+}
 
 }  // namespace skyloop

@@ -1,4 +1,4 @@
-// Values of any type, as tables of parameters take them.
+// Values of any type, as tables of parameters take them, and how a reader of tables notes the keys that it asks for.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,6 +42,41 @@ std::optional<std::vector<std::string>> all_texts(const toml::array& list) {
         texts.push_back(text->get());
     }
     return texts;
+}
+
+KeyType key_type_of(const ParameterSpec& spec) {
+    switch (spec.type) {
+        case ParameterType::number:
+            return KeyType::number;
+        case ParameterType::whole_number:
+            return KeyType::whole_number;
+        case ParameterType::flag:
+            return KeyType::flag;
+        case ParameterType::word:
+            return KeyType::word;
+        case ParameterType::words:
+            return KeyType::word_or_words;
+        case ParameterType::text:
+            return KeyType::text;
+        case ParameterType::texts:
+            return KeyType::text_or_texts;
+        case ParameterType::numbers:
+            return KeyType::number_groups;
+    }
+    return KeyType::text;
+}
+
+KeyEntry entry_of(const ParameterSpec& spec) {
+    return {.name = spec.name,
+            .type = key_type_of(spec),
+            .least = spec.least,
+            .most = spec.most,
+            .count_least = spec.count_least,
+            .count_most = spec.count_most,
+            .choices = spec.choices,
+            .standard = spec.standard,
+            .needed = spec.needed,
+            .meaning = spec.meaning};
 }
 
 }  // namespace
@@ -89,6 +124,75 @@ void TableReader::file_path(std::string_view key, const std::filesystem::path& f
     this->text(key, path, text);
     if (!path.empty()) value = folder / path;
     if (path.empty() && table_[key].is_string()) mistake(key, "is empty; expected the path of a file");
+}
+
+void TableReader::note(std::string_view key, KeyText text, KeyEntry entry) {
+    entry.name = key;
+    if (!text.meaning.empty()) entry.meaning = text.meaning;
+    entry.standard_words = text.standard;
+    if (!text.standard.empty()) entry.standard.reset();
+    // Behind a look whether it is there stands a value of no meaning.
+    if (recorder_->given() && std::find(asked_for_.begin(), asked_for_.end(), key) != asked_for_.end())
+        entry.standard.reset();
+    // An empty text is no text.
+    if (entry.standard == ParameterValue(std::string())) entry.standard.reset();
+    recorder_->note(path_, std::move(entry));
+}
+
+void TableReader::record_inner(std::string_view key, KeyText text, KeyEntry entry,
+                               const std::function<void(TableReader&)>& body) {
+    static const toml::table nothing;  // readers may keep it until the file has been read
+    const std::string path = path_of(key);
+    const bool list = entry.type == KeyType::tables;
+    note(key, text, std::move(entry));
+    recorder_->record(path, list, [&] {
+        TableReader reader(nothing, path, mistakes_, recorder_);
+        body(reader);
+    });
+}
+
+void TableReader::needs_one_of(std::initializer_list<std::string_view> keys, const std::string& sentence) {
+    if (recording()) recorder_->note_one_of(path_, keys);
+    const bool there = std::any_of(keys.begin(), keys.end(), [this](std::string_view key) { return has(key); });
+    if (!there) mistake_here(sentence);
+}
+
+void TableReader::note_not_both(std::string_view key, std::string_view other) {
+    if (recording()) recorder_->note_not_both(path_, key, other);
+}
+
+void TableReader::where(bool acts, std::string_view when, const std::function<void()>& body) {
+    for (const std::string& key : given_of(body))
+        if (!acts) mistakes_.idle_keys.push_back(fmt::format("{}: has no effect here; it acts {}", path_of(key), when));
+}
+
+std::vector<std::string> TableReader::given_of(const std::function<void()>& body) {
+    const auto before = static_cast<std::ptrdiff_t>(known_.size());
+    body();
+    std::vector<std::string> given(known_.begin() + before, known_.end());
+    std::erase_if(given, [this](const std::string& key) { return !table_.contains(key); });
+    return given;
+}
+
+void TableReader::not_both(std::string_view key, std::string_view other) {
+    note_not_both(key, other);
+    if (!recording() && has(key) && has(other))
+        mistake(other, fmt::format("stands beside {}; expected one of the two", key));
+}
+
+void TableReader::note_parameters(const std::vector<ParameterSpec>& specs) {
+    if (!recording()) return;
+    for (const ParameterSpec& spec : specs)
+        note(spec.name, {}, entry_of(spec));
+}
+
+std::optional<std::size_t> TableReader::note_kinds(std::span<const std::string_view> words, KeyText text,
+                                                   std::string_view standard) {
+    if (!recording()) return std::nullopt;
+    const auto kind = recorder_->kind(path_, words);
+    note("kind", text,
+         {.type = KeyType::word, .choices = {words.begin(), words.end()}, .standard = std::string(standard)});
+    return kind;
 }
 
 }  // namespace skyloop

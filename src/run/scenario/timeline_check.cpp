@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/time/utc_time.hpp"
+#include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 #include "run/fault/planned_events.hpp"
 
@@ -61,6 +66,118 @@ void warn_of_late(std::string_view table, const TimelineEntry& entry, const Time
             entry.name, difference(*begins, run.start).value(), difference(run.end, run.start).value()));
 }
 
+constexpr std::size_t most_events_looked_at = 10'000;  // what comes every millisecond comes for ever
+
+// What is known of the timeline before the run.
+struct KnownTimeline {
+    struct Entry {
+        std::string name, kind;
+        bool open = false;     // it depends on what the run will bring
+        bool command = false;  // it ends as it begins
+        [[nodiscard]] bool is_called(const std::string& by) const { return name == by || kind == by; }
+    };
+    std::vector<Entry> entries;
+    std::vector<TimelineEvent> events;  // by the end of the run, or as many as are looked at
+};
+
+KnownTimeline known_timeline(const Scenario& scenario, GpsTime start, GpsTime end) {
+    const std::vector<TimelineEntry> entries = timeline_of(scenario);
+    const std::vector<bool> open = hang_on_the_run(entries);
+    KnownTimeline known;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const bool command = i >= scenario.faults.size();
+        known.entries.push_back(
+            {entries[i].name,
+             command ? std::string(command_name(scenario.commands[i - scenario.faults.size()].command.verb))
+                     : scenario.faults[i].kind,
+             open[i], command});
+    }
+    known.events = planned_events(entries, {start, end, scenario.run.seed}, most_events_looked_at);
+    return known;
+}
+
+// The occurrence that a sentence names, or the first of all; counted as the judge does, as they begin, over all entries
+// that the name fits.
+struct Occurrence {
+    std::optional<GpsTime> begins{}, ends{};
+};
+
+Occurrence occurrence_of(const EventReference& event, const KnownTimeline& known) {
+    Occurrence found;
+    std::map<std::pair<std::size_t, int>, int> numbers;  // by entry and its own count
+    int begun = 0;
+    for (const TimelineEvent& e : known.events) {
+        const KnownTimeline::Entry& entry = known.entries[e.entry];
+        if (!entry.is_called(event.name)) continue;
+        int& number = numbers[{e.entry, e.occurrence}];
+        if (e.begins) number = ++begun;
+        if (event.occurrence && *event.occurrence != number) continue;
+        if (e.begins && !found.begins) found.begins = e.time;
+        if ((!e.begins || entry.command) && !found.ends) found.ends = e.time;
+    }
+    return found;
+}
+
+// Why the event of a sentence does not come; empty: it does, or may. @param at its first time, where that is known
+std::string why_no_event(const EventReference& event, const KnownTimeline& known, std::optional<GpsTime>& at) {
+    at.reset();
+    for (const KnownTimeline::Entry& entry : known.entries)
+        if (entry.open && entry.is_called(event.name)) return "";
+    const Occurrence occurrence = occurrence_of(event, known);
+    at = event.end ? occurrence.ends : occurrence.begins;
+    if (at || known.events.size() >= most_events_looked_at) return "";
+    const std::string name = event.name + (event.occurrence ? fmt::format("#{}", *event.occurrence) : std::string());
+    return occurrence.begins ? fmt::format("'{}' does not end before the run does", name)
+                             : fmt::format("'{}' does not begin before the run ends", name);
+}
+
+// A silence that begins in time shows when it has lasted.
+TimeClause watched(const ExpectedSentence& sentence) {
+    TimeClause time = sentence.time;
+    const ExpectedSubject subject = sentence.subject.subject;
+    const bool silence = subject == ExpectedSubject::client_silent || subject == ExpectedSubject::receiver_silent;
+    if (silence && time.rule == TimeRule::within) time.until = *time.until + sentence.subject.silence;
+    return time;
+}
+
+// Why a sentence cannot be decided by the end, or may not be; empty: it can.
+std::string why_too_late(const TimeClause& time, const KnownTimeline& known, GpsTime start, GpsTime end) {
+    std::optional<GpsTime> origin = start;
+    if (time.event && time.event->is_run()) {
+        if (time.event->end) return {};
+    } else if (time.event) {
+        if (std::string why = why_no_event(*time.event, known, origin); !why.empty()) return "cannot be met: " + why;
+    }
+    if (!origin) return {};
+    const auto late = [&](Seconds offset) { return advanced(*origin, offset) > end; };
+    const auto shown = [&](Seconds offset) { return difference(advanced(*origin, offset), start).value(); };
+    const double length = difference(end, start).value();
+    if (late(time.from))
+        return fmt::format("cannot be met: it is due {:g} s after the start of the run, which ends after {:g} s",
+                           shown(time.from), length);
+    const bool lasts = time.never || time.rule == TimeRule::from_to || time.rule == TimeRule::after;
+    if (lasts && time.until && late(*time.until))
+        return fmt::format("cannot be met: it lasts until {:g} s after the start of the run, which ends after {:g} s",
+                           shown(*time.until), length);
+    if (time.until && late(*time.until))  // it may come true before
+        return fmt::format(
+            "may stay undecided: it has until {:g} s after the start of the run, which ends after {:g} s",
+            shown(*time.until), length);
+    return {};
+}
+
+// The same of a command, whose own times are the host's. @param speed simulated seconds of each of them
+std::string why_no_time(const Probe& probe, double speed, double length) {
+    const double at = probe.at.value();
+    if (at >= length)
+        return fmt::format("cannot be met: it is asked {:g} s after the start of the run, which ends after {:g} s", at,
+                           length);
+    const double until = at + probe.within.value_or(probe.timeout).value() * speed;
+    if (until <= length) return {};
+    return fmt::format("may stay undecided: it has until {:g} s after the start of the run, which ends after {:g} s",
+                       until, length);
+}
+
 }  // namespace
 
 Result<void> check_timeline(const Scenario& scenario, GpsTime start) {
@@ -90,6 +207,19 @@ std::vector<std::string> timeline_warnings(const Scenario& scenario, GpsTime sta
         if (!may[i]) warn_of_late(i < scenario.faults.size() ? "fault" : "command", entries[i], run, warnings);
     for (std::string& warning : expectation_warnings(scenario, start, end))
         warnings.push_back(std::move(warning));
+    return warnings;
+}
+
+std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime start, GpsTime end) {
+    const KnownTimeline known = known_timeline(scenario, start, end);
+    std::vector<std::string> warnings;
+    for (const Expectation& expectation : scenario.expectations) {
+        std::string why;
+        if (expectation.sentence) why = why_too_late(watched(*expectation.sentence), known, start, end);
+        if (expectation.probe)
+            why = why_no_time(*expectation.probe, scenario.run.speed, difference(end, start).value());
+        if (!why.empty()) warnings.push_back(fmt::format("[[expect]] '{}' {}", expectation.title(), why));
+    }
     return warnings;
 }
 

@@ -60,12 +60,13 @@ struct ShapeReading {
     PlaneReader& places;
     VehicleLimits& vehicle;  // in: the one that stands for an absent key
     Angle heading;
+    bool whole = true;  // no place is missing
 };
 
 // The words of `kind` of generated paths, those that can be steps of another.
 std::span<const std::string_view> path_shape_names();
 // Reads the keys of one of them. Nothing when a place is missing.
-std::optional<PathWish> read_path_shape(std::size_t kind, const ShapeReading& reading);
+std::optional<PathWish> read_path_shape(std::size_t kind, ShapeReading reading);
 // Whether its path has dice, and so a seed.
 bool has_dice(std::size_t kind);
 
