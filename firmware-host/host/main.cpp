@@ -22,8 +22,7 @@
 #include "commands.hpp"
 #include "help_text.hpp"
 #include "misuse.hpp"
-#include "number_options.hpp"
-#include "word_options.hpp"
+#include "option_checks.hpp"
 
 namespace {
 

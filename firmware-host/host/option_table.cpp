@@ -13,11 +13,6 @@
 namespace skyloop::host {
 namespace {
 
-std::vector<std::string> model_words() {
-    const auto names = model_names();
-    return {names.begin(), names.end()};
-}
-
 std::vector<std::string> vehicle_words() {
     const auto names = track_vehicle_names();
     return {names.begin(), names.end()};
@@ -34,7 +29,6 @@ std::vector<ValueRule> option_rules() {
         {"--grid", "", "WEST,SOUTH,EAST,NORTH", text},
         {"--junit", "", "FILE", file},
         {"--mavlink", "", "ADDRESS", uri},
-        {"--model", "", "NAME", words, model_words()},
         {"--nav", "", "FILE", file},
         {"--origin", "", "LAT,LON[,HEIGHT]", text},
         {"--out", "", "DIR", folder},
@@ -221,7 +215,8 @@ std::string option_sentence(const OptionRow& option) {
                                         [&](const std::string& word) { return text.find(word) != std::string::npos; });
     if (option.kind == ValueKind::words && !words_told)
         text += fmt::format("; one of {}", fmt::join(option.words, " "));
-    if (!option.range.empty()) text += fmt::format("; {}", option.range);
+    if (!option.range.empty() && text.find(option.range) == std::string::npos)
+        text += fmt::format("; {}", option.range);
     if (option.repeatable && text.find("repeatable") == std::string::npos) text += "; repeatable";
     if (option.required && !option.positional()) text += "; needed";
     return text;

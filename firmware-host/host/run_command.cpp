@@ -103,7 +103,7 @@ Action add_run_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("run", "Stream in real time until stopped");
     auto options = std::make_shared<RunOptions>();
     add_run_options(*command, *options);
-    command->add_option("--speed", options->speed, "Simulated seconds per second, or max");
+    options->keys.add(*command, "--speed", "run.speed", {}, ", or max");
     command
         ->add_option("--priority", options->priority,
                      "Of the loop on this machine: auto (real-time where allowed), normal")

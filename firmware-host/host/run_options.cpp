@@ -6,16 +6,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <system_error>
 
-#include "base/core/spelling.hpp"
 #include "base/core/text_file.hpp"
-#include "base/time/utc_time.hpp"
 #include "run/emulator/scenario_mistakes.hpp"
+#include "run/scenario/board_file.hpp"
+#include "run/scenario/key_catalogue.hpp"
 #include "run/scenario/scenario_changes.hpp"
 #include "run/scenario/scenario_file.hpp"
 #include "wire/transport/open_transport.hpp"
@@ -23,145 +25,113 @@
 namespace skyloop::host {
 namespace {
 
-Result<void> apply_place(const RunOptions& options, Scenario& scenario) {
+// An option's path is relative to the working folder, a key's to the scenario.
+std::string path_text(const std::string& path, const std::string& scenario) {
+    const bool elsewhere =
+        std::filesystem::path(scenario).has_parent_path() && !path.empty() && path != demo_scene_name;
+    return quoted_value(elsewhere ? std::filesystem::absolute(path).string() : path).toml;
+}
+
+bool names_toml(const std::string& trajectory) { return std::filesystem::path(trajectory).extension() == ".toml"; }
+
+// --at and --trajectory, which take the place of the whole table.
+Result<void> add_trajectory_change(const RunOptions& options, std::vector<ScenarioChange>& changes) {
     if (!options.at.empty() && !options.trajectory.empty())
         return fail(ErrorCode::usage, "--at and --trajectory both say where the antenna is; expected one of them");
     if (!options.at.empty()) {
         const auto place = parse_place(options.at);
         if (!place) return fail(place.error());
-        scenario.trajectory = FixedSettings{*place};
+        changes.push_back(
+            change_of("--at", "trajectory", fmt::format("{{ kind = \"fixed\", at = [{}] }}", options.at)));
     }
-    if (options.trajectory.empty()) return {};
-    const std::filesystem::path file = options.trajectory;
-    if (file.extension() != ".toml") {
-        FileSettings track;
-        track.path = file;
-        scenario.trajectory = track;
-        return {};
+    if (!options.trajectory.empty() && !names_toml(options.trajectory))
+        changes.push_back(change_of(
+            "--trajectory", "trajectory",
+            fmt::format("{{ kind = \"file\", path = {} }}", path_text(options.trajectory, options.scenario))));
+    return {};
+}
+
+Result<std::vector<ScenarioChange>> changes_of(const std::vector<std::string>& settings) {
+    std::vector<ScenarioChange> changes;
+    for (const std::string& setting : settings) {
+        auto change = parse_change(setting);
+        if (!change) return fail(change.error().code, "--set " + change.error().message);
+        change->option = "--set " + change->key;
+        changes.push_back(std::move(*change));
     }
-    auto trajectory = read_trajectory_file(file, scenario.warnings);
+    return changes;
+}
+
+// The options are rows laid over the scenario, after those of --set.
+Result<std::vector<ScenarioChange>> changes_of(const RunOptions& options) {
+    auto changes = changes_of(options.settings);
+    if (!changes) return changes;
+    if (const auto added = add_trajectory_change(options, *changes); !added) return fail(added.error());
+    const auto add = [&](std::string_view option, std::string_view key, bool given, const std::string& toml) {
+        if (given) changes->push_back(change_of(option, key, toml));
+    };
+    std::string files, outputs;
+    for (const std::string& file : options.nav)
+        files += path_text(file, options.scenario) + ", ";
+    for (const std::string& uri : options.outputs)
+        outputs += fmt::format("{{ to = {} }}, ", quoted_value(uri).toml);
+    add("--nav", "sky.navigation", !options.nav.empty(), "[" + files + "]");
+    add("--scene", "scene.buildings", !options.scene.empty(), path_text(options.scene, options.scenario));
+    add("--board", "receiver.0.board", !options.board.empty(),
+        is_board_path(options.board) ? path_text(options.board, options.scenario) : quoted_value(options.board).toml);
+    add("--port", "receiver.0.port", !options.ports.empty(), toml_list(options.ports));
+    add("--state", "receiver.0.state_file", !options.state.empty(), path_text(options.state, options.scenario));
+    add("--output", "output", !options.outputs.empty(), "[" + outputs + "]");
+    for (ScenarioChange& change : options.keys.changes())
+        if (change.value.toml != "\"max\"") changes->push_back(std::move(change));
+    return changes;
+}
+
+Result<Scenario> scenario_with_changes(const std::string& file, std::span<const ScenarioChange> changes) {
+    if (file.empty() && changes.empty()) return Scenario();
+    ScenarioReading reading =
+        file.empty() ? read_with_mistakes("", Scenario().name, changes) : read_file_with_mistakes(file, changes);
+    if (!reading.mistakes) return std::move(reading.scenario);
+    if (!file.empty() && reading.scenario.source.empty()) return fail(*reading.mistakes);
+    Error mistakes = with_other_mistakes(*reading.mistakes, reading.scenario, data_folders(), wall_clock());
+    return fail(ErrorCode::input, std::move(mistakes.message));
+}
+
+// @param playback of the track, --loop and others: changes of the file that has the trajectory
+Result<Scenario> scenario_of_options(const RunOptions& options, std::vector<ScenarioChange> changes,
+                                     const std::vector<ScenarioChange>& playback) {
+    const bool own_file = names_toml(options.trajectory);
+    if (!own_file) changes.insert(changes.end(), playback.begin(), playback.end());
+    auto scenario = scenario_with_changes(options.scenario, changes);
+    if (!scenario || !own_file) return scenario;
+    auto trajectory = read_trajectory_file(options.trajectory, scenario->warnings, playback);
     if (!trajectory) return fail(trajectory.error());
-    scenario.trajectory = std::move(*trajectory);
-    scenario.trajectory_file = file;
+    scenario->trajectory = std::move(*trajectory);
+    scenario->trajectory_file = options.trajectory;
     // For the digest: the file's name alone does not say what it holds.
-    if (const auto text = read_text_file(file)) scenario.source += "\n" + *text;
-    return {};
+    if (const auto text = read_text_file(options.trajectory)) scenario->source += "\n" + *text;
+    return scenario;
 }
 
-// --loop, --time-scale and --skip of a recorded track.
-Result<void> apply_playback(const RunOptions& options, Scenario& scenario) {
-    const std::string_view given = options.loop         ? "--loop"
-                                   : options.time_scale ? "--time-scale"
-                                   : options.skip_s     ? "--skip"
-                                                        : "";
-    if (given.empty()) return {};
-    auto* file = std::get_if<FileSettings>(&scenario.trajectory);
-    if (!file)
-        return fail(ErrorCode::usage, fmt::format("{}: expected --trajectory TRACK, or a trajectory of kind \"file\" "
-                                                  "in the scenario",
-                                                  given));
-    if (options.loop) file->playback.end = EndOfPath::loop;
-    if (options.time_scale && !(*options.time_scale >= 1e-3 && *options.time_scale <= 1e3))
-        return fail(ErrorCode::usage, fmt::format("--time-scale {}: expected 0.001 to 1000", *options.time_scale));
-    if (options.skip_s && !(*options.skip_s >= 0 && *options.skip_s <= 1e9))
-        return fail(ErrorCode::usage, fmt::format("--skip {}: expected seconds, 0 to 1e9", *options.skip_s));
-    file->playback.time_scale = options.time_scale.value_or(file->playback.time_scale);
-    if (options.skip_s) file->playback.skip = Seconds(*options.skip_s);
-    return {};
-}
-
-// A repeated run begins when the recorded one did: what it heard and was told has its instants from then on. The option
-// may be there, as all that changed that run.
-Result<void> apply_start(const RunOptions& options, RunSettings& run) {
-    if (options.start.empty()) return {};
-    std::optional<GpsTime> start;
-    if (options.start != "now") {
-        const auto utc = parse_instant(options.start);
-        if (!utc) return fail(ErrorCode::usage, "--start: " + utc.error().message + ", or now");
-        start = to_gps_time(*utc, LeapSeconds::announced());
-    }
-    if (options.repeat.empty()) {
-        run.start = start;
-        run.start_now = !start;
-    } else if (start && start != run.start) {
-        return fail(
-            ErrorCode::usage,
-            fmt::format("--start {}: the run of --repeat {} began at another time; expected that, or no --start",
-                        options.start, options.repeat));
-    }
-    return {};
-}
-
-Result<void> apply_time(const RunOptions& options, Scenario& scenario) {
-    if (const auto applied = apply_start(options, scenario.run); !applied) return applied;
-    if (options.duration) {
-        if (!(*options.duration > 0 && *options.duration <= longest_run_s))
-            return fail(ErrorCode::usage, fmt::format("--duration {}: expected a number above 0, up to {}",
-                                                      *options.duration, longest_run_s));
-        scenario.run.duration = Seconds(*options.duration);
-    }
-    return {};
-}
-
-Result<void> apply_model(const RunOptions& options, Scenario& scenario) {
-    if (options.model.empty()) return {};
-    if (choose_model(scenario.model, options.model)) return {};
+// A repeated run begins when the recorded one did: what it received has its instants from then on. --start may be
+// there, as all that changed that run.
+Result<void> apply_repeat(const RunOptions& options, Scenario& scenario) {
+    if (options.repeat.empty()) return {};
+    const auto start = scenario.run.start;
+    if (const auto repeated = repeat_run(options.repeat, scenario); !repeated) return repeated;
+    if (!options.keys.given("--start") || !start || start == scenario.run.start) return {};
     return fail(ErrorCode::usage,
-                fmt::format("--model {}: unknown; expected one of {}{}", options.model, fmt::join(model_names(), " "),
-                            did_you_mean(options.model, model_names())));
+                fmt::format("--start {}: the run of --repeat {} began at another time; expected that, or no --start",
+                            options.keys.typed("--start"), options.repeat));
 }
 
-Result<void> apply_receiver(const RunOptions& options, Scenario& scenario) {
-    ReceiverEntry& first = scenario.receivers.front();
-    const std::array<std::pair<const char*, bool>, 4> given{{{"board", !options.board.empty()},
-                                                             {"port", !options.ports.empty()},
-                                                             {"power", !options.power.empty()},
-                                                             {"state_file", !options.state.empty()}}};
-    for (const auto& [key, by_option] : given)
-        if (by_option) first.told_at.erase(key);
-    if (!options.board.empty()) first.board = options.board;
-    if (!options.ports.empty()) first.ports = options.ports;
-    if (!options.state.empty()) first.state_file = options.state;
-    if (!options.power.empty()) first.power = options.power;
-    if (options.rate) {
-        if (!(*options.rate >= 0.01 && *options.rate <= 100))
-            return fail(ErrorCode::usage, fmt::format("--rate {}: expected 0.01 to 100 Hz", *options.rate));
-        first.rate_hz = options.rate;
-        first.told_at.erase("rate_hz");
-    }
-    return {};
-}
-
-Result<void> apply_outputs(const RunOptions& options, Scenario& scenario) {
-    if (!options.outputs.empty()) scenario.outputs.clear();
-    for (const std::string& uri : options.outputs) {
-        auto output = parse_output_uri(uri);
-        if (!output) return fail(ErrorCode::usage, "--output: " + output.error().message);
-        scenario.outputs.push_back(std::move(*output));
-    }
+// A receiver that an output names must be there, even where the option took the place of others.
+Result<void> check_outputs(const Scenario& scenario) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
         names.push_back(receiver_name(scenario, i));
     for (const OutputSettings& output : scenario.outputs)
         if (const auto chosen = told_receivers(output, names); !chosen) return fail(chosen.error());
-    return {};
-}
-
-Result<void> apply_speed(const RunOptions& options, Scenario& scenario) {
-    if (options.speed.empty()) return {};
-    scenario.told_at.erase("run.speed");
-    if (options.speed == "max") {
-        scenario.run.speed = std::numeric_limits<double>::infinity();
-        return {};
-    }
-    double speed = 0;
-    const char* end = options.speed.data() + options.speed.size();
-    const auto [rest, error] = std::from_chars(options.speed.data(), end, speed);
-    if (error != std::errc() || rest != end || !(speed >= 1e-3 && speed <= 1e6))
-        return fail(
-            ErrorCode::usage,
-            fmt::format("--speed {}: expected simulated seconds per second, 0.001 to 1000000, or max", options.speed));
-    scenario.run.speed = speed;
     return {};
 }
 
@@ -176,22 +146,13 @@ Result<void> check_repeat(const RunOptions& options) {
                     options.repeat, options.record));
 }
 
-// The options that decide what a run computes, one a line.
+// The options that decide what a run computes, one per line.
 std::string options_text(const RunOptions& o) {
     std::string text;
-    for (const auto& [name, value] : {std::pair{"at", o.at},
-                                      {"trajectory", o.trajectory},
-                                      {"start", o.start},
-                                      {"model", o.model},
-                                      {"scene", o.scene},
-                                      {"board", o.board}})
+    for (const auto& [name, value] :
+         {std::pair{"at", o.at}, {"trajectory", o.trajectory}, {"scene", o.scene}, {"board", o.board}})
         if (!value.empty()) text += fmt::format("\n--{} {}", name, value);
-    if (o.rebase_nav) text += "\n--rebase-nav";
-    if (o.loop) text += "\n--loop";
-    if (o.time_scale) text += fmt::format("\n--time-scale {}", *o.time_scale);
-    if (o.skip_s) text += fmt::format("\n--skip {}", *o.skip_s);
-    if (o.duration) text += fmt::format("\n--duration {}", *o.duration);
-    if (o.rate) text += fmt::format("\n--rate {}", *o.rate);
+    text += o.keys.computing();
     if (o.seed) text += fmt::format("\n--seed {}", *o.seed);
     return text;
 }
@@ -213,19 +174,9 @@ void add_setting_option(CLI::App& command, std::vector<std::string>& settings) {
 }
 
 Result<Scenario> scenario_with(const std::string& file, const std::vector<std::string>& settings) {
-    std::vector<ScenarioChange> changes;
-    for (const std::string& setting : settings) {
-        auto change = parse_change(setting);
-        if (!change) return fail(change.error().code, "--set " + change.error().message);
-        changes.push_back(std::move(*change));
-    }
-    if (file.empty() && changes.empty()) return Scenario();
-    ScenarioReading reading =
-        file.empty() ? read_with_mistakes("", "--set", changes) : read_file_with_mistakes(file, changes);
-    if (!reading.mistakes) return std::move(reading.scenario);
-    if (reading.scenario.source.empty()) return fail(*reading.mistakes);
-    Error mistakes = with_other_mistakes(*reading.mistakes, reading.scenario, data_folders(), wall_clock());
-    return fail(ErrorCode::input, std::move(mistakes.message));
+    const auto changes = changes_of(settings);
+    if (!changes) return fail(changes.error());
+    return scenario_with_changes(file, *changes);
 }
 
 void add_place_options(CLI::App& command, RunOptions& options) {
@@ -235,10 +186,9 @@ void add_place_options(CLI::App& command, RunOptions& options) {
         .add_option("--nav", options.nav,
                     "RINEX navigation file or almanac; repeatable; without it a nominal constellation")
         ->allow_extra_args(false);
-    command.add_flag("--rebase-nav", options.rebase_nav,
-                     "Move the navigation data to the start time, keeping its time of day");
-    command.add_option("--start", options.start,
-                       "ISO 8601 in UTC, or now; default now, with --nav when four satellites first have orbits");
+    options.keys.add_flag(command, "--rebase-nav", "sky.rebase_navigation", "true",
+                          "Move the navigation data to the start time, keeping its time of day");
+    options.keys.add(command, "--start", "run.start");
 }
 
 void add_scene_option(CLI::App& command, RunOptions& options) {
@@ -253,14 +203,14 @@ void add_run_options(CLI::App& command, RunOptions& options) {
     add_place_options(command, options);
     command.add_option("--trajectory", options.trajectory,
                        "A .toml file with a [trajectory], or a track: .csv, .gpx, …");
-    command.add_flag("--loop", options.loop, "The track begins anew at its end");
-    command.add_option("--time-scale", options.time_scale, "Seconds of the track in one second of the run");
-    command.add_option("--skip", options.skip_s, "Seconds of the track that are left out at its beginning");
-    command.add_option("--duration", options.duration, "Seconds");
-    command.add_option("--model", options.model, fmt::format("{}; default modern", fmt::join(model_names(), " ")));
+    options.keys.add_flag(command, "--loop", "trajectory.end", "\"loop\"", "Repeat the track when it ends");
+    options.keys.add(command, "--time-scale", "trajectory.time_scale");
+    options.keys.add(command, "--skip", "trajectory.skip_s");
+    options.keys.add(command, "--duration", "run.duration_s");
+    options.keys.add(command, "--model", "model.name");
     add_scene_option(command, options);
-    command.add_option("--board", options.board, "Receiver profile, default ublox-m8; see skyloop boards");
-    command.add_option("--rate", options.rate, "Navigation rate at start, Hz");
+    command.add_option("--board", options.board, key_help(scenario_key("receiver.0.board")));
+    options.keys.add(command, "--rate", "receiver.0.rate_hz");
     command
         .add_option("--port", options.ports,
                     fmt::format("Where the bytes go: {} - client:NAME; NAME=… is the board's port of that name, such "
@@ -268,15 +218,14 @@ void add_run_options(CLI::App& command, RunOptions& options) {
                                 fmt::join(port_shapes(), " ")))
         ->allow_extra_args(false);
     command
-        .add_option("--output", options.outputs,
-                    "What is told beside the ports: gps-input:HOST:PORT hil-gps:HOST:PORT msp-tcp:[HOST:]PORT "
-                    "msp-tcp-to:HOST:PORT json-udp:HOST:PORT json-tcp:[HOST:]PORT json-file:PATH, then ,KEY=VALUE; "
-                    "repeatable")
+        .add_option(
+            "--output", options.outputs,
+            "Send the solution to other programs as well: gps-input:HOST:PORT hil-gps:HOST:PORT msp-tcp:[HOST:]PORT "
+            "msp-tcp-to:HOST:PORT json-udp:HOST:PORT json-tcp:[HOST:]PORT json-file:PATH, then ,KEY=VALUE; "
+            "repeatable")
         ->allow_extra_args(false);
-    command.add_option("--power", options.power,
-                       "What the fault power_cut switches in a live run: relay:VID:PID/N gpio:VID:PID/N hub:PORT_PATH "
-                       "line:DEVICE/rts line:DEVICE/dtr command:CUT|RESTORE");
-    command.add_option("--state", options.state, "File that keeps what the receiver saves beyond the run");
+    options.keys.add(command, "--power", "receiver.0.power");
+    command.add_option("--state", options.state, key_help(scenario_key("receiver.0.state_file")));
     command.add_option("--repeat", options.repeat,
                        "A recording: its start, its clients' bytes and its live commands happen again");
     command.add_option("--seed", options.seed, "Default 1; the same scenario, seed and inputs give the same bytes");
@@ -333,28 +282,29 @@ std::optional<std::string> pause_warning(const Scenario& scenario) {
 
 Result<Scenario> scenario_from(const RunOptions& options) {
     if (const auto kept = check_repeat(options); !kept) return fail(kept.error());
-    auto read = scenario_with(options.scenario, options.settings);
-    if (!read) return fail(read.error());
-    Scenario scenario = std::move(*read);
-    if (!options.nav.empty()) {
-        scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
-        scenario.told_at.erase("sky.navigation");
+    auto changes = changes_of(options);
+    if (!changes) return fail(changes.error());
+    const auto of_track = [](const ScenarioChange& change) {
+        return !change.option.starts_with("--set") && change.key.starts_with("trajectory.");
+    };
+    const auto middle = std::stable_partition(changes->begin(), changes->end(), std::not_fn(of_track));
+    const std::vector<ScenarioChange> playback(middle, changes->end());
+    changes->erase(middle, changes->end());
+    auto scenario = scenario_of_options(options, *changes, {});
+    if (scenario && !playback.empty() && !std::holds_alternative<FileSettings>(scenario->trajectory))
+        return fail(ErrorCode::usage,
+                    fmt::format("{}: expected --trajectory TRACK, or a trajectory of kind \"file\" in the scenario",
+                                playback.front().option));
+    if (scenario && !playback.empty()) scenario = scenario_of_options(options, *changes, playback);
+    if (!scenario) return scenario;
+    if (options.keys.typed("--speed") == "max") {
+        scenario->told_at.erase("run.speed");
+        scenario->run.speed = std::numeric_limits<double>::infinity();
     }
-    if (options.rebase_nav) {
-        scenario.sky.rebase_navigation = true;
-        scenario.told_at.erase("sky.rebase_navigation");
-    }
-    if (!options.scene.empty()) {
-        scenario.scene.buildings = {options.scene};
-        scenario.told_at.erase("scene.buildings");
-    }
-    if (options.seed) scenario.run.seed = *options.seed;
-    if (!options.repeat.empty())
-        if (const auto repeated = repeat_run(options.repeat, scenario); !repeated) return fail(repeated.error());
-    scenario.source += options_text(options);
-    for (const auto& apply :
-         {apply_place, apply_playback, apply_time, apply_model, apply_receiver, apply_outputs, apply_speed})
-        if (const auto applied = apply(options, scenario); !applied) return fail(applied.error());
+    if (options.seed) scenario->run.seed = *options.seed;
+    scenario->source += options_text(options);
+    for (const auto& done : {apply_repeat(options, *scenario), check_outputs(*scenario)})
+        if (!done) return fail(done.error());
     return scenario;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
+#include "key_options.hpp"
 #include "messages.hpp"
 #include "run/scenario/scenario.hpp"
 
@@ -17,14 +18,10 @@ namespace skyloop::host {
 struct RunOptions {
     std::string scenario;
     std::vector<std::string> settings;  ///< --set
-    std::string at, trajectory, start, model, board, state, scene, control, power;
+    KeyOptions keys;                    ///< that are keys of the scenario as they stand
+    std::string at, trajectory, board, state, scene, control;
     std::vector<std::string> nav, ports, outputs;
-    bool rebase_nav = false;
-    bool loop = false;                         ///< the track of --trajectory or of the scenario begins anew at its end
-    std::optional<double> time_scale, skip_s;  ///< of the same
-    std::optional<double> duration, rate;
     std::optional<std::uint64_t> seed;
-    std::string speed;              ///< run only: a number or "max"
     std::string priority = "auto";  ///< run only: "auto" or "normal"
     std::string repeat;             ///< a recording to be repeated
     std::string token;              ///< run only: of --control

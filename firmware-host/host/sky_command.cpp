@@ -105,16 +105,17 @@ int print_tracks(const SkyOptions& options, const World& world) {
 
 // The first option that says what a recorded run has said already, or how to draw something else; empty: none.
 std::string_view not_of_a_run(const SkyOptions& options) {
-    const std::array<std::pair<bool, std::string_view>, 10> others{{{!options.run.at.empty(), "--at"},
-                                                                    {!options.run.nav.empty(), "--nav"},
-                                                                    {options.run.rebase_nav, "--rebase-nav"},
-                                                                    {!options.run.start.empty(), "--start"},
-                                                                    {!options.run.model.empty(), "--model"},
-                                                                    {options.tracks_h > 0, "--tracks"},
-                                                                    {options.step > 0, "--step"},
-                                                                    {!options.grid.empty(), "--grid"},
-                                                                    {options.all_paths, "--all-paths"},
-                                                                    {options.view != "sky", "--view"}}};
+    const std::array<std::pair<bool, std::string_view>, 10> others{
+        {{!options.run.at.empty(), "--at"},
+         {!options.run.nav.empty(), "--nav"},
+         {options.run.keys.given("--rebase-nav"), "--rebase-nav"},
+         {options.run.keys.given("--start"), "--start"},
+         {options.run.keys.given("--model"), "--model"},
+         {options.tracks_h > 0, "--tracks"},
+         {options.step > 0, "--step"},
+         {!options.grid.empty(), "--grid"},
+         {options.all_paths, "--all-paths"},
+         {options.view != "sky", "--view"}}};
     const auto* const given = std::find_if(others.begin(), others.end(), [](const auto& other) { return other.first; });
     return given == others.end() ? std::string_view() : given->second;
 }
@@ -173,7 +174,6 @@ int show_sky(const SkyOptions& options) {
     const Messages messages(options.run.verbosity);
     auto scenario = scenario_from(options.run);
     if (!scenario) return messages.error(scenario.error());
-    if (options.mask_deg) scenario->sky.elevation_mask = Angle::degrees(*options.mask_deg);
     if (const auto misuse = sky_misuse(options, *scenario)) return messages.error({ErrorCode::usage, *misuse});
     if (!options.run_folder.empty()) return show_city_run(options, *scenario, messages);
     if (!options.grid.empty()) return show_coverage(options, *scenario, messages);
@@ -198,7 +198,7 @@ void add_grid_options(CLI::App& command, SkyOptions& options) {
         "Map over an area (csv or svg): WEST,SOUTH,EAST,NORTH in degrees; cells by --step or --grid-size");
     command.add_option("--grid-size", options.grid_size, "Cells along the longer side of the map, default 50")
         ->check(CLI::Range(1, 1000));
-    command.add_option("--duration", options.run.duration, "Seconds that the map spans, default 0: one instant");
+    command.add_option("--duration", options.duration, "Seconds that the map spans, default 0: one instant");
     command.add_option("--interval", options.interval_s, "Seconds between the instants of the map, default 60")
         ->check(CLI::Range(0.1, 86400.0));
     command.add_option("--height", options.height_m, "Of the map's antennas above the ground, metres, default 1.5")
@@ -222,13 +222,11 @@ Action add_sky_command(CLI::App& app) {
     command->add_option("SCENARIO", options->run.scenario, "Scenario file (TOML); without it embedded defaults");
     add_setting_option(*command, options->run.settings);
     add_place_options(*command, options->run);
-    command->add_option("--model", options->run.model, "Sensor model that decides which satellites are used");
+    options->run.keys.add(*command, "--model", "model.name");
     add_scene_option(*command, options->run);
     command->add_option("--format", options->format, "text, json, csv or svg")
         ->check(CLI::IsMember({"text", "json", "csv", "svg"}));
-    command
-        ->add_option("--mask", options->mask_deg, "Elevation mask, degrees; default the scenario's, its board's or 5")
-        ->check(CLI::Range(0.0, 90.0));
+    options->run.keys.add(*command, "--mask", "sky.elevation_mask_deg");
     command->add_option("--tracks", options->tracks_h, "ECEF tracks of all satellites over so many hours (csv or svg)")
         ->check(CLI::Range(0.01, 24.0 * 14));
     command

@@ -23,7 +23,7 @@ Result<CoverageGrid> asked_grid(const SkyOptions& options) {
 
 // The sky above the middle of the area: satellites are so far that it serves every cell.
 Result<std::vector<CoverageEpoch>> map_epochs(const SkyOptions& options, const World& world, const Geodetic& middle) {
-    const double duration = options.run.duration.value_or(0);
+    const double duration = options.duration;
     const double count = std::floor(duration / options.interval_s) + 1;
     if (!(count <= most_map_epochs))
         return fail(ErrorCode::usage, fmt::format("--interval {:g}: {:g} s make {:.0f} epochs; expected at most {:.0f}",

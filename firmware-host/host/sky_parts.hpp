@@ -15,13 +15,13 @@ namespace skyloop::host {
 struct SkyOptions {
     RunOptions run;
     std::string format = "text";
-    std::optional<double> mask_deg;
     double tracks_h = 0;
     double step = 0;           ///< --tracks: s; --grid: m; 0: not given
     bool all_paths = false;    ///< of satellites in line of sight too, off roofs and ground too
     std::string view = "sky";  ///< of the svg: sky or plan
     std::string grid;          ///< WEST,SOUTH,EAST,NORTH
     int grid_size = 0;         ///< cells along the longer side; 0: not given
+    double duration = 0;       ///< that a map spans, s
     double interval_s = 60;    ///< between epochs of a map
     double height_m = 1.5;     ///< of a map's antennas above the ground
     int threads = 0;           ///< 0: as many as the machine has

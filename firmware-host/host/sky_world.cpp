@@ -65,7 +65,7 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
 
 int show_city_run(const SkyOptions& options, const Scenario& scenario, const Messages& messages) {
     if (options.format != "svg") return messages.error({ErrorCode::usage, "--run comes as --format svg"});
-    const Angle mask = options.mask_deg ? Angle::degrees(*options.mask_deg) : Angle::degrees(5);
+    const Angle mask = scenario.sky.elevation_mask.value_or(Angle::degrees(5));
     const auto run = read_city_run(options.run_folder, mask);
     if (!run) return messages.error(run.error());
     std::vector<std::string> unknown_geoid;  // is told by the scene where it matters

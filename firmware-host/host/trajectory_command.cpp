@@ -221,12 +221,9 @@ Action add_trajectory_command(CLI::App& app) {
         ->check(CLI::Range(1e-4, 1e4));
     command->add_option("--duration", options->duration_s, "Seconds to look at; default the whole path")
         ->check(CLI::Range(1e-3, 1e8));
-    command->add_option("--smooth", options->smooth, "none noise sensor: as trajectory.smooth of a scenario")
-        ->check(CLI::IsMember({"none", "noise", "sensor"}));
-    command->add_option("--gap", options->gap_s, "Seconds without rows that are a gap; default 10")
-        ->check(CLI::Range(1e-3, 1e7));
-    command->add_option("--speed", options->speed_mps, "m/s of a file without times; default its own or the vehicle's")
-        ->check(CLI::Range(1e-2, 12000.0));
+    declare_as_key(*command->add_option("--smooth", options->smooth), "trajectory.smooth");
+    declare_as_key(*command->add_option("--gap", options->gap_s), "trajectory.gap_s");
+    declare_as_key(*command->add_option("--speed", options->speed_mps), "trajectory.speed_mps", "file");
     command->add_option("--origin", options->origin, "LATITUDE,LONGITUDE[,HEIGHT] of local metres: degrees, m");
     add_verbosity_options(*command, options->verbosity);
     return [options] { return trajectory(*options); };

@@ -38,13 +38,13 @@ MISUSES = [
     (["run", "--start", "yesterday"], 2, ["--start", "yesterday"]),
     (["run", "--start", "2017-06-30T23:59:60Z"], 2, ["--start: '2017-06-30T23:59:60Z' is not a UTC time"]),
     (["run", "--start", "2024-02-30T00:00:00Z"], 2, ["2024-02-30"]),
-    (["run", "--duration", "-1"], 2, ["--duration -1"]),
+    (["run", "--duration", "-1"], 2, ["--duration: is -1; expected a number above 0"]),
     (["run", "--duration", "nan"], 2, ["--duration"]),
-    (["run", "--duration", "1e20"], 2, ["--duration 1e+20: expected a number above 0, up to 3162240000"]),
-    (["check", "--duration", "3162240001"], 2, ["--duration 3162240001: expected a number above 0, up to 3162240000"]),
+    (["run", "--duration", "1e20"], 2, ["--duration: is 1e+20; expected a number above 0, up to 3162240000"]),
+    (["check", "--duration", "3162240001"], 2, ["--duration: is 3162240001; expected a number above 0, up to 3162240000"]),
     (["check", "--start", "2199-12-31T00:00:00Z", "--duration", "3e9"], 2, ["2199-12-31", "2269"]),
-    (["run", "--rate", "0"], 2, ["--rate 0"]),
-    (["run", "--speed", "fast"], 2, ["--speed fast"]),
+    (["run", "--rate", "0"], 2, ["--rate: is 0; expected a number from 0.01 to 100"]),
+    (["run", "--speed", "fast"], 2, ["--speed: is a text; expected a number from 0.001 to 1000000"]),
     (["run", "--rebase-nav"], 2, ["--rebase-nav", "--nav"]),
     (["run", "--sede", "1"], 2, ["--sede"]),
     (["run", "--set", "run.seed"], 2, ["--set 'run.seed': expected KEY=VALUE"]),
@@ -63,6 +63,10 @@ MISUSES = [
     (["sky", "--step", "60"], 2, ["--step", "--tracks or --grid"]),
     (["boards", "nothing"], 2, ["nothing"]),
     (["compare", "/no/a.csv", "/no/b.csv"], 1, ["/no/a.csv"]),
+    (["run", "--scene", "demo", "--time-scale", "2"], 2, ["--time-scale: expected --trajectory TRACK"]),
+    (["check", "--output", "json-udp:nowhere"], 2, ["--output: "]),
+    (["check", "--set", "run.seed=[1]"], 2, ["--set run.seed: is a list; expected a whole number"]),
+    (["check", "--set", "sky.constellations=gps"], 2, ["--set sky.constellations: is a text; expected a list"]),
     (["run", "--seed", "-1"], 2, ["--seed: '-1'; expected a whole number from 0 to 18446744073709551615"]),
     (["run", "--seed", "0x10"], 2, ["--seed: '0x10'; expected a whole number"]),
     (["run", "--seed", "18446744073709551616"], 2, ["--seed: '18446744073709551616'; expected a whole number"]),
@@ -73,7 +77,7 @@ MISUSES = [
     (["run", "--rate", ""], 2, ["--rate: ''; expected a number"]),
     (["run", "--rate", "0x10"], 2, ["--rate: '0x10'; expected a number"]),
     (["run", "--time-scale", "inf"], 2, ["--time-scale: 'inf'; expected a number"]),
-    (["sky", "--mask", "nan"], 2, ["--mask: 'nan'; expected a number from 0 to 90"]),
+    (["sky", "--mask", "nan"], 2, ["--mask: 'nan'; expected a number"]),
     (["sky", "--grid-size", "-4"], 2, ["--grid-size: '-4'; expected a whole number from 1 to 1000"]),
     (["sky", "--threads", "0"], 2, ["--threads: '0'; expected a whole number from 1 to 256"]),
     (["compare", "a", "b", "--reference", "47,8"], 2, ["--reference 47,8: expected LAT,LON,HEIGHT"]),
@@ -363,6 +367,41 @@ what = "the moon rises"
                 by_key, by_option, without = ((folder / run / file).read_bytes() for run in ("key", "set", "plain"))
                 self.assertEqual(by_key, by_option, file)
                 self.assertNotEqual(by_key, without, file)
+
+    def test_an_option_is_the_key_that_it_names(self):
+        scenario = "[run]\nstart = 2026-03-01T00:00:00Z\n"
+        options = ["--duration", "20", "--rate", "5", "--board", "ublox-m9", "--at", "47,8,400", "--start", "2026-03-02"]
+        keys = ["run.duration_s=20", "receiver.0.rate_hz=5", "receiver.0.board=ublox-m9", "trajectory.kind=fixed",
+                "trajectory.at=[47, 8, 400]", "run.start=2026-03-02"]
+        with open_folder() as name:
+            folder = pathlib.Path(name)
+            (folder / "s.toml").write_text(scenario, encoding="utf-8")
+            skyloop("simulate", folder / "s.toml", "--out", folder / "option", *options)
+            skyloop("simulate", folder / "s.toml", "--out", folder / "set", *(word for key in keys for word in ("--set", key)))
+            skyloop("simulate", folder / "s.toml", "--out", folder / "plain", "--duration", "20")
+            for file in ("port0.out", "fixes.csv", "satellites.csv", "observations.rnx"):
+                by_option, by_key, without = ((folder / run / file).read_bytes() for run in ("option", "set", "plain"))
+                self.assertEqual(by_option, by_key, file)
+                self.assertNotEqual(by_option, without, file)
+
+    def test_an_option_goes_before_set_and_a_relative_path_begins_here(self):
+        with open_folder() as name:
+            folder = pathlib.Path(name)
+            (folder / "scenarios").mkdir()
+            (folder / "scenarios" / "s.toml").write_text("[run]\nduration_s = 1\n", encoding="utf-8")
+            (folder / "track.csv").write_text("t_s,lat_deg,lon_deg,h_ell_m\n0,47,8,400\n9,47.001,8,400\n", encoding="utf-8")
+            before = os.getcwd()
+            os.chdir(folder)
+            try:
+                done = skyloop("check", "scenarios/s.toml", "--set", "receiver.0.rate_hz=2", "--rate", "5",
+                               "--trajectory", "track.csv", "--skip", "2")
+                self.assertIn("5 Hz", done.stdout)
+                self.assertIn("track.csv", done.stdout)
+                done = skyloop("check", "scenarios/s.toml", "--trajectory", "track.csv", "--skip", "-1", check=False)
+                self.assertEqual((done.returncode, done.stderr),
+                                 (2, "skyloop: --skip: is -1; expected a number from 0 to 1000000000\n"))
+            finally:
+                os.chdir(before)
 
     def test_run_json_tells_what_ran(self):
         with open_folder() as folder:

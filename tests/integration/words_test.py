@@ -19,7 +19,8 @@ MISUSES = [
     (["check", "--at", ""], "skyloop: --at: ''; expected LAT,LON[,HEIGHT]; see skyloop check --help"),
     (["check", "--start", ""], "skyloop: --start: ''; expected TIME; see skyloop check --help"),
     (["check", "--nav", ""], "skyloop: --nav: ''; expected FILE; see skyloop check --help"),
-    (["check", "--model", ""], "skyloop: --model: ''; expected NAME; see skyloop check --help"),
+    (["check", "--model", ""], "skyloop: --model: ''; expected one of modern ideal constant-sigma satellite-count whole-path refraction baseline; "
+     "see skyloop check --help"),
     (["check", "--state", ""], "skyloop: --state: ''; expected FILE; see skyloop check --help"),
     # Standard output is where a command says what it has to say.
     (["scene", "demo", "--svg", "-"],
@@ -40,7 +41,7 @@ MISUSES = [
      "skyloop: --out: a value is missing; expected FILE; see skyloop campaign report --help"),
     (["check", "--seed", "1", "--seed", "2", "--seed", "3"],
      "skyloop: --seed: is there 3 times; expected it once; see skyloop check --help"),
-    (["sky", "--mask", "95"], "skyloop: --mask: '95'; expected a number from 0 to 90; see skyloop sky --help"),
+    (["sky", "--mask", "95"], "skyloop: --mask: is 95; expected a number from 0 to 90"),
     (["replay", "r", "--speed", "0"], "skyloop: --speed: '0'; expected a number from 0.001 to 1000; see skyloop replay --help"),
     (["sky", "--format", "jsn"],
      "skyloop: --format: 'jsn'; expected one of text json csv svg; did you mean 'json'?; see skyloop sky --help"),
@@ -66,11 +67,11 @@ MISUSES = [
     (["boards", "ublox-m88"],
      "skyloop: board 'ublox-m88' is not known; did you mean 'ublox-m8'?"),
     (["boards", "NEO-M8N"], "skyloop: board 'NEO-M8N' is not known; did you mean 'ublox-m8'?"),
-    (["check", "--board", "m8"], "skyloop: board 'm8' is not known; did you mean 'ublox-m8'?"),
+    (["check", "--board", "m8"], "skyloop: --board: board 'm8' is not known; did you mean 'ublox-m8'?"),
     (["run", "--port", "/dev/ttyUSB0"],
-     "skyloop: port '/dev/ttyUSB0': no such kind of port; did you mean 'serial:/dev/ttyUSB0'?"),
-    (["run", "--port", "2000"], "skyloop: port '2000': no such kind of port; did you mean 'tcp:2000'?"),
-    (["run", "--port", "gps0"], "skyloop: port 'gps0': no such kind of port; did you mean 'pty:gps0'?"),
+     "skyloop: --port: port '/dev/ttyUSB0': no such kind of port; did you mean 'serial:/dev/ttyUSB0'?"),
+    (["run", "--port", "2000"], "skyloop: --port: port '2000': no such kind of port; did you mean 'tcp:2000'?"),
+    (["run", "--port", "gps0"], "skyloop: --port: port 'gps0': no such kind of port; did you mean 'pty:gps0'?"),
 ]
 
 
@@ -108,9 +109,8 @@ class WordsTest(unittest.TestCase):
                 self.assertTrue(len(line) <= 100 or " " not in line.strip(), line)
         shown = skyloop("sky", "--help").stdout
         self.assertIn("Usage: skyloop sky [OPTIONS] [SCENARIO]\n", shown)
-        self.assertIn("\n  --mask N                    Elevation mask, degrees;", shown)
+        self.assertRegex(shown, r"\n  --mask N +Elevation mask: a satellite exactly at it is used, °;\s+0\s+to\s+90;\s+default\s+the\s+board's")
         self.assertIn("\n  --at LAT,LON[,HEIGHT]       Stand still there:", shown)
-        self.assertRegex(shown, r"; 0\s+to 90\n")
         self.assertRegex(shown, r"--height N +Of the map's .*\n.*; with --grid\n")
 
     def test_boards_are_a_table(self):

@@ -1,12 +1,12 @@
-"""Every key that a scenario or board file may hold, and every column of the output tables, stands in its page, and no page
-tells of one that is not there."""
+"""Every key that a board file may hold, and every column of the output tables, stands in its page, and no page names one that
+is not there. The keys of scenarios have a page of their own, and tests/unit/scenario/scenario_documentation_test.cpp."""
 
 import re
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-READERS = ("number|file_path|boolean|text|texts|text_or_texts|integer|numbers|whole_numbers|place|utc|choice|choices|word|quantity|"
+READERS = ("number|degrees|file_path|boolean|text|texts|text_or_texts|integer|numbers|whole_numbers|place|utc|choice|choices|word|quantity|"
            "table|tables|named_values")
 COMMENT = re.compile(r"//[^\n]*")
 CODE_SPAN = re.compile(r"`([^`]*)`")
@@ -14,13 +14,10 @@ NAME = re.compile(r"[A-Za-z0-9_]+(?:-[A-Za-z0-9_]+)*")
 
 
 def keys_read(source):
-    """Names of the keys that this C++ text reads: literals passed to a TableReader, lists of systems, and places, which come in
-    two frames."""
+    """Names of the keys that this C++ text reads: literals passed to a TableReader, and lists of systems."""
     code = COMMENT.sub("", source)
     keys = set(re.findall(rf'\.(?:{READERS})\(\s*"([^"]+)"', code))
     keys |= set(re.findall(r'\bread_constellation_list\(\s*\w+\s*,\s*"([^"]+)"', code))
-    for place in re.findall(r'\bplaces\.read\(\s*\w+\s*,\s*"([^"]+)"', code):
-        keys |= {place, f"{place}_level"}
     return keys
 
 
@@ -52,11 +49,6 @@ def read(name):
     return (ROOT / name).read_text(encoding="utf-8")
 
 
-def scenario_sources():
-    return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/run/scenario").glob("*.cpp"))
-            if not path.name.startswith(("board_", "key_"))]
-
-
 def board_sources():
     return [path.read_text(encoding="utf-8") for path in sorted((ROOT / "src/run/scenario").glob("board_*.cpp"))]
 
@@ -73,13 +65,12 @@ class Extraction(unittest.TestCase):
         run.quantity(
             "long_line_m", y, {0, 1});
         model.table("layers", [&](TableReader& t) { t.boolean("on", b); });
-        if (const auto at = places.read(row, "at")) {}
         read_constellation_list(t, "systems", s);
         static constexpr std::array<Word<Kind>, 1> kinds{{{"narrow-band", Kind::narrow}}};
         return {{"rain", &p.rain}};'''
 
     def test_keys(self):
-        self.assertEqual(keys_read(self.CODE), {"wide", "long_line_m", "layers", "on", "at", "at_level", "systems"})
+        self.assertEqual(keys_read(self.CODE), {"wide", "long_line_m", "layers", "on", "systems"})
 
     def test_words(self):
         self.assertEqual(words_read(self.CODE), {"narrow-band", "rain"})
@@ -95,21 +86,11 @@ class Pages(unittest.TestCase):
         self.assertGreater(len(names), 15)  # or the extraction has gone blind
         self.assertEqual(sorted(names - names_told(read(page))), [], f"read by the program, not told in {page}")
 
-    def test_scenario_keys_are_told(self):
-        self.expect_all(set().union(*map(keys_read, scenario_sources())), "docs/scenario.md")
-
-    def test_scenario_words_are_told(self):
-        self.expect_all(set().union(*map(words_read, scenario_sources())), "docs/scenario.md")
-
     def test_presets_are_told(self):
         names = re.findall(r"_names\[\] = \{([^}]*)\}", read("src/run/scenario/modern_settings.hpp"))
         words = set(re.findall(r'"([^"]+)"', ",".join(names)))
         self.assertGreater(len(words), 4)
         self.assertEqual(sorted(words - names_told(read("docs/scenario.md"))), [])
-
-    def test_scenario_page_invents_nothing(self):
-        known = set().union(*map(keys_read, scenario_sources())) | set().union(*map(words_read, scenario_sources()))
-        self.assertEqual(sorted(names_of_rows(read("docs/scenario.md")) - known), [], "told, but never read")
 
     def test_board_keys_are_told(self):
         self.expect_all(set().union(*map(keys_read, board_sources())), "boards/README.md")

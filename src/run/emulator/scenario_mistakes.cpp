@@ -29,12 +29,14 @@ class Mistakes {
 public:
     explicit Mistakes(const Scenario& scenario) : place_(scenario.name + ":") {}
 
-    /// @param place of the key that names what was tried: "FILE:LINE:COLUMN: KEY: "; empty: it is in no file
+    /// @param place of the key that names what was tried: "FILE:LINE:COLUMN: KEY: " or "--nav: "; empty: it is in no
+    /// file
     void add(const Error& error, const std::string& place = {}) {
         for (std::string& line : lines_of(error.message)) {
             const bool placed = line.starts_with(place_) || place.empty();
             // Of what cannot be read and is named in the scenario, the name is wrong.
-            if (error.code != ErrorCode::outside || !place.empty()) code_ = ErrorCode::input;
+            const bool by_key = !place.empty() && (!place.starts_with("--") || place.starts_with("--set "));
+            if (error.code != ErrorCode::outside || by_key) code_ = ErrorCode::input;
             add_line(placed ? std::move(line) : place + line);
         }
     }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct CampaignValue {
 };
 CampaignValue campaign_value(double number);
 CampaignValue campaign_value(std::int64_t number);
+CampaignValue quoted_value(std::string_view text);
 /// The same for values that are one to a scenario: 2 and 2.0.
 std::string sense_of(const CampaignValue& value);
 

@@ -114,6 +114,8 @@ CampaignValue campaign_value(double number) { return {floating_text(number), flo
 
 CampaignValue campaign_value(std::int64_t number) { return {fmt::format("{}", number), fmt::format("{}", number)}; }
 
+CampaignValue quoted_value(std::string_view text) { return {quoted_text(text), std::string(text)}; }
+
 void with_toml_value(const CampaignValue& value, const std::function<void(const toml::node&)>& use) {
     const toml::table table = parsed_toml("v = " + value.toml);
     use(*table.get("v"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "detail/key_recorder.hpp"
 #include "detail/scenario_keys.hpp"
@@ -76,6 +77,21 @@ const std::vector<KeyTable>& scenario_key_tables() {
         return recorder.tables();
     }();
     return tables;
+}
+
+const KeyEntry& scenario_key(std::string_view path, std::string_view kind) {
+    const std::size_t dot = path.rfind('.');
+    std::string_view table = path.substr(0, dot);
+    // Of lists, the place of the entry.
+    if (const std::size_t place = table.rfind('.');
+        place != table.npos && table.find_first_not_of("0123456789", place + 1) == table.npos)
+        table = table.substr(0, place);
+    for (const KeyTable& known : scenario_key_tables())
+        for (const KeyEntry& key : known.keys) {
+            const bool of_kind = kind.empty() || std::find(key.kinds.begin(), key.kinds.end(), kind) != key.kinds.end();
+            if (known.path == table && key.name == path.substr(dot + 1) && of_kind) return key;
+        }
+    throw std::out_of_range(std::string(path));
 }
 
 std::string_view key_unit(std::string_view key) {

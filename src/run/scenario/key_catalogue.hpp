@@ -72,6 +72,12 @@ struct KeyTable {
 /// All tables, each before those in it. Made once, by letting the readers read nothing.
 const std::vector<KeyTable>& scenario_key_tables();
 
+/// The key of "receiver.0.rate_hz". @param kind of its table, where that decides what the key is
+/// Throws std::out_of_range for a key that there is not: the program names it.
+const KeyEntry& scenario_key(std::string_view path, std::string_view kind = {});
+/// For the help of an option: "Navigation rate at the factory, Hz; 0.01 to 100; default the board's".
+std::string key_help(const KeyEntry& key);
+
 /// What the suffix of a key says of its unit: "m/s" of "speed_mps"; empty when it has none.
 std::string_view key_unit(std::string_view key);
 

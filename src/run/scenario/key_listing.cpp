@@ -168,6 +168,17 @@ std::string meaning_of(const std::vector<KeyTable>& tables, const KeyTable& tabl
 
 }  // namespace
 
+std::string key_help(const KeyEntry& key) {
+    std::string text = key.meaning;
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    if (const std::string_view unit = key_unit(key.name); !unit.empty()) text += fmt::format(", {}", unit);
+    if (const std::string limits = limits_of(key); !limits.empty()) text += "; " + limits;
+    if (const std::string standard = default_of(key); standard != "none" && standard != "needed")
+        text += "; default " + standard;
+    std::erase(text, '`');
+    return text;
+}
+
 std::string scenario_keys_markdown() {
     std::string page =
         "# Every key of a scenario\n\nWritten by `skyloop schema --format markdown`, from what the readers ask for; "

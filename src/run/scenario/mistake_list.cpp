@@ -25,10 +25,13 @@ std::string on_one_line(std::string_view sentence) {
 // What was put in after parsing has no place of its own.
 const MistakeList::Change* MistakeList::change_of(const toml::source_region& where, std::string_view sentence) const {
     if (where.begin.line > 0 || changes_.empty()) return nullptr;
-    const auto begins = [&](const Change& change) { return sentence.starts_with(change.path); };
-    auto found = std::find_if(changes_.begin(), changes_.end(), begins);
+    const Change* named = nullptr;
+    for (const Change& change : changes_)
+        if (sentence.starts_with(change.path) && (named == nullptr || change.path.size() >= named->path.size()))
+            named = &change;
+    if (named != nullptr) return named;
     const auto speaks = [&](const Change& change) { return speaks_of(sentence, change.path); };
-    if (found == changes_.end()) found = std::find_if(changes_.begin(), changes_.end(), speaks);
+    const auto found = std::find_if(changes_.begin(), changes_.end(), speaks);
     return found == changes_.end() ? &changes_.front() : &*found;
 }
 
@@ -36,8 +39,8 @@ std::string MistakeList::told(const toml::source_region& where, std::string_view
     const Change* change = change_of(where, sentence);
     std::string text(sentence);
     if (change != nullptr && sentence.starts_with(change->path)) {
-        text.replace(0, change->path.size(), change->option.empty() ? change->key : change->option);
-        if (!change->option.empty()) return text;
+        if (!change->option.empty()) return change->option + text.substr(std::min(text.find(": "), text.size()));
+        text.replace(0, change->path.size(), change->key);
     }
     if (change != nullptr && !change->option.empty()) return fmt::format("{}: {}", change->option, text);
     const toml::source_position place = where.begin.line > 0 ? where.begin

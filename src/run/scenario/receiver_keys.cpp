@@ -25,8 +25,8 @@ void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::fi
                             "client:NAME; NAME= before it says which port",
                             "a pty"});
     receiver.text("power", entry.power,
-                  {"the actuator that the fault power_cut switches in a live run: relay:, gpio:, hub:, line: or "
-                   "command: (docs/actuators.md)",
+                  {"the actuator that the fault power_cut switches in a live run: relay:VID:PID/N gpio:VID:PID/N "
+                   "hub:PORT_PATH line:DEVICE/rts line:DEVICE/dtr command:CUT|RESTORE (docs/actuators.md)",
                    "none"});
     for (const char* key :
          {"board", "port", "power", "config", "state_file", "rate_hz", "baud", "constellations", "dual_frequency"})

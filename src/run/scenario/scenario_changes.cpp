@@ -163,18 +163,25 @@ toml::source_region place_of_parameter(const toml::table& table, std::string_vie
     return top;
 }
 
+}  // namespace
+
 void apply_changes(toml::table& table, MistakeList& mistakes, std::span<const ScenarioChange> changes) {
-    for (const ScenarioChange& change : changes)
-        mistakes.changed({path_of_change(table, change.key, false), change.key, change.option,
-                          place_of_parameter(table, change.key).begin,
-                          change.option.empty() ? fmt::format("{} = {}", change.key, change.value.toml) : ""});
-    for (const ScenarioChange& change : changes)
-        if (const std::string missing = apply_change(table, change); !missing.empty())
-            mistakes.add(change.option.empty() ? place_of_parameter(table, change.key) : toml::source_region(),
-                         fmt::format("'{}' leads to no key: the scenario has no {}; expected tables, and of a list an "
+    for (const ScenarioChange& change : changes) {
+        const std::string missing = apply_change(table, change);
+        const std::string path = path_of_change(table, change.key, false);
+        const auto place = place_of_parameter(table, change.key);
+        const bool by_option = !change.option.empty();
+        mistakes.changed({path, change.key, change.option, place.begin,
+                          by_option ? std::string() : fmt::format("{} = {}", change.key, change.value.toml)});
+        if (!missing.empty())
+            mistakes.add(by_option ? toml::source_region() : place,
+                         fmt::format("{} leads to no key: the scenario has no {}; expected tables, and of a list an "
                                      "entry's place from 0 on, or its name or kind",
-                                     change.key, missing));
+                                     by_option ? path + ":" : "'" + change.key + "'", missing));
+    }
 }
+
+namespace {
 
 // Everything in a table as lines, and what may name a file.
 class ContentWalk {

@@ -46,7 +46,7 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
     read_constellation_list(sky, "constellations", settings.constellations,
                             {"which systems of the data send", "all; gps and qzss for sensor models"});
     sky.degrees("elevation_mask_deg", settings.elevation_mask, {0, 90},
-                {"a satellite exactly at the mask is used", "the board's; 5 for sensor models"});
+                {"elevation mask: a satellite exactly at it is used", "the board's; 5 for sensor models"});
     sky.word("ephemeris_rule", {{"forward", EphemerisRule::forward}, {"nearest", EphemerisRule::nearest}},
              settings.ephemeris_rule,
              {"the newest healthy record that is not of the future, or the nearest one", "by the model"});
@@ -134,15 +134,18 @@ Result<Scenario> read_scenario_file(const std::filesystem::path& file) {
     return std::move(reading.scenario);
 }
 
-Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                                                std::span<const ScenarioChange> changes) {
     const auto text = read_text_file(file);
     if (!text) return fail(text.error());
     std::optional<TrajectorySettings> trajectory;
-    const auto read = read_toml(*text, file.string(), [&](TableReader& top) {
+    const auto read_keys = [&](TableReader& top) {
         if (!top.has("trajectory")) top.mistake_here("no [trajectory] table in this file");
         trajectory = read_trajectory_keys(top, {}, {read_frame(top), file.parent_path()}, warnings);
         if (trajectory && is_live(*trajectory)) refuse_idle_frame(top);
-    });
+    };
+    const auto change = [&](toml::table& table, MistakeList& mistakes) { apply_changes(table, mistakes, changes); };
+    const auto read = read_toml(*text, file.string(), read_keys, change);
     if (!read) return fail(read.error());
     return trajectory.value_or(FixedSettings{});
 }

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/core/result.hpp"
 #include "run/scenario/scenario.hpp"
+#include "run/scenario/scenario_changes.hpp"
 
 namespace skyloop {
 
@@ -21,6 +23,8 @@ Result<Scenario> read_scenario_file(const std::filesystem::path& file);
 
 /// Reads the [trajectory] (and [frame]) of a file that holds nothing else, as `--trajectory FILE.toml` names it.
 /// @param warnings what a reader should be told of it is added here
-Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings);
+/// @param changes of its keys
+Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                                                std::span<const ScenarioChange> changes = {});
 
 }  // namespace skyloop

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "run/scenario/key_catalogue.hpp"
 #include "scenario_text.hpp"
@@ -307,6 +308,16 @@ TEST(KeyCatalogue, EveryKeyHasASentence) {
             EXPECT_FALSE(key.meaning.empty()) << "the reader's call has no text for " << table.path << "." << key.name;
     EXPECT_EQ(key_of("run", "seed").meaning, "the same scenario, seed and inputs give the same bytes");
     EXPECT_EQ(key_of("run", "duration_s").standard_words, "until stopped");
+}
+
+TEST(KeyCatalogue, GivesOptionsTheirHelp) {
+    EXPECT_EQ(key_help(scenario_key("receiver.0.rate_hz")),
+              "Navigation rate at the factory, Hz; 0.01 to 100; default the board's");
+    EXPECT_EQ(key_help(scenario_key("run.seed")),
+              "The same scenario, seed and inputs give the same bytes; at least 0; default 1");
+    EXPECT_EQ(scenario_key("trajectory.speed_mps", "file").least, 0.01);
+    EXPECT_EQ(scenario_key("trajectory.speed_mps", "circle").least, -12000);
+    EXPECT_THROW((void)scenario_key("run.sede"), std::out_of_range);
 }
 
 TEST(KeyCatalogue, TellsUnitsBySuffixes) {

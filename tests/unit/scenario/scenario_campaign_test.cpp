@@ -250,6 +250,26 @@ TEST(ScenarioChanges, AWrongValueIsToldWhereTheFileChangesIt) {
     EXPECT_THAT(change_mistake("run", "1"), HasSubstr("is a whole number; expected a table"));
 }
 
+TEST(ScenarioChanges, AnOptionStandsBeforeItsMistake) {
+    const auto mistake_of = [](ScenarioChange change, std::string_view text) {
+        change.option = "--rate";
+        const auto scenario = read_changed_scenario(text, "c.toml", std::vector{change});
+        return scenario ? "none" : scenario.error().message;
+    };
+    EXPECT_EQ(mistake_of(*parse_change("receiver.0.rate_hz=0"), ""),
+              "--rate: is 0; expected a number from 0.01 to 100");
+    EXPECT_EQ(mistake_of(*parse_change("receiver.0.rate_hz=often"), "[[receiver]]\nbaud = 9600\n"),
+              "--rate: is a text; expected a number from 0.01 to 100");
+    EXPECT_EQ(mistake_of(*parse_change("receiver.0.rate_hz=[5]"), ""),
+              "--rate: is a list; expected a number from 0.01 to 100");
+    EXPECT_THAT(mistake_of(*parse_change("receiver.0.rate_zh=5"), ""),
+                StartsWith("--rate: unknown key; did you mean 'rate_hz'?"));
+    EXPECT_THAT(mistake_of(*parse_change("receiver.3.rate_hz=5"), ""),
+                StartsWith("--rate: leads to no key: the scenario has no receiver.3"));
+    EXPECT_THAT(mistake_of(*parse_change("receiver.0.rate_hz=5"), "[run]\nsede = 3\n"),
+                StartsWith("c.toml:2:1: run.sede: unknown key"));
+}
+
 TEST(ScenarioChanges, AMistakeIsToldOnceAndAtTheParameterThatMadeIt) {
     const auto mistake_of = [](const std::string& key) {
         const std::string text =

@@ -3,6 +3,7 @@
 
 #include "base/geo/level_frame.hpp"
 #include "run/scenario/scenario.hpp"
+#include "run/scenario/scenario_changes.hpp"
 #include "run/verdict/expectation.hpp"
 #include "table_reader.hpp"
 
@@ -10,6 +11,9 @@ namespace skyloop {
 
 /// Everything in a scenario. @param folder that paths are relative to
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
+
+/// Changes what has been parsed; a key that leads nowhere is a mistake.
+void apply_changes(toml::table& table, MistakeList& mistakes, std::span<const ScenarioChange> changes);
 
 /// @param folder that paths are relative to
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
