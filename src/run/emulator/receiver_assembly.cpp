@@ -23,6 +23,7 @@ Result<firmware::BoardProfile> board_of(const ReceiverEntry& entry, const DataFo
     if (!board) return fail(board.error());
     if (const auto speed = speed_of_wires(entry); speed || entry.baud) board->baud = speed ? *speed : *entry.baud;
     if (entry.export_limits) board->export_limits = *entry.export_limits;
+    if (entry.latency) board->solution_latency = *entry.latency;
     if (!entry.constellations.empty()) board->constellations = entry.constellations;
     if (!entry.sentences.empty()) board->sentences.clear();
     for (const firmware::NmeaSentence sentence : entry.sentences)

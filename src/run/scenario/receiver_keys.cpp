@@ -63,6 +63,8 @@ void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
     read_export_limits(
         receiver, entry.export_limits,
         {"a fix above 18 288 m and above 515 m/s is withheld: never, beyond both, beyond one of them", "the board's"});
+    receiver.quantity("latency_s", entry.latency, {0, 2},
+                      {"from the epoch to the first byte of its messages", "the board's"});
     receiver.quantity("static_hold_mps", entry.static_hold_below, {0, 100},
                       "slower than this, the position is held; 0: never");
 }

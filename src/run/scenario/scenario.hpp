@@ -172,6 +172,7 @@ struct ReceiverEntry {
     StartKind start = StartKind::hot;
     DynamicModel dynamic_model = DynamicModel::portable;
     std::optional<firmware::ExportLimits> export_limits;  ///< nothing: the board's
+    std::optional<Seconds> latency;                       ///< from the epoch to its output; nothing: the board's
     MetresPerSecond static_hold_below{0};
     bool power_up = false;  ///< it is switched on at the start of the run: banner, then `start`
     std::map<std::uint32_t, std::uint64_t> config{};  ///< raw values by the ids of items that its user has saved in it

@@ -125,6 +125,13 @@ TEST(Assembly, TheScenarioChangesTheBoard) {
     EXPECT_EQ(receiver.board().sentences[1].every_epochs, 1);
 }
 
+TEST(Assembly, AScenarioDelaysItsReceiver) {
+    const double of_board = assembled("").emulator->receiver().board().solution_latency.value();
+    EXPECT_NE(of_board, 0.2);
+    const Assembly delayed = assembled("[[receiver]]\nlatency_s = 0.2");
+    EXPECT_EQ(delayed.emulator->receiver().board().solution_latency.value(), 0.2);
+}
+
 TEST(Assembly, ARateAboveTheBoardsIsAWarning) {
     const Assembly fast = assembled("[[receiver]]\nboard = \"ublox-m8\"\nrate_hz = 50");
     EXPECT_THAT(fast.warnings, Contains(HasSubstr("50 Hz is more than ublox-m8 can do; it runs at 18 Hz")));
