@@ -1,10 +1,10 @@
-#include "completions.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <map>
 #include <string_view>
+
+#include "option_table.hpp"
 
 namespace skyloop::host {
 namespace {

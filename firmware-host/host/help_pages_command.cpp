@@ -7,9 +7,8 @@
 
 #include "base/core/make_folder.hpp"
 #include "commands.hpp"
-#include "completions.hpp"
-#include "manual_pages.hpp"
 #include "messages.hpp"
+#include "option_table.hpp"
 
 namespace skyloop::host {
 namespace {

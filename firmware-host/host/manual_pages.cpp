@@ -1,10 +1,10 @@
-#include "manual_pages.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdint>
+
+#include "option_table.hpp"
 
 namespace skyloop::host {
 namespace {

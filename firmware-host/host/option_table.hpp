@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,5 +69,15 @@ struct ValueRule {
 
 /// The rules that `option_table` applies. A test holds them against the declarations: each is of an option that exists.
 const std::vector<ValueRule>& value_rules();
+
+/// A file for bash-completion's folder: bash 4.4 or later, with nothing else needed.
+std::string bash_completion(std::span<const CommandRow> commands);
+/// A file `_skyloop` for zsh's fpath.
+std::string zsh_completion(std::span<const CommandRow> commands);
+
+/// The manual page skyloop-NAME(1), in the macros of man(7).
+std::string manual_page(const CommandRow& command, std::string_view version);
+/// All commands with their options as one page of Markdown; hidden ones are left out.
+std::string commands_markdown(std::span<const CommandRow> commands);
 
 }  // namespace skyloop::host

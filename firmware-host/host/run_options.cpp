@@ -15,6 +15,7 @@
 #include <system_error>
 
 #include "base/core/text_file.hpp"
+#include "base/core/utf8.hpp"
 #include "run/emulator/scenario_mistakes.hpp"
 #include "run/scenario/board_file.hpp"
 #include "run/scenario/key_catalogue.hpp"
@@ -41,8 +42,14 @@ Result<void> add_trajectory_change(const RunOptions& options, std::vector<Scenar
     if (!options.at.empty()) {
         const auto place = parse_place(options.at);
         if (!place) return fail(place.error());
-        changes.push_back(
-            change_of("--at", "trajectory", fmt::format("{{ kind = \"fixed\", at = [{}] }}", options.at)));
+        std::string numbers;  // as TOML writes them
+        for (std::size_t from = 0, to = 0; to < options.at.size(); from = to + 1) {
+            to = std::min(options.at.find(',', from), options.at.size());
+            double number = 0;
+            std::from_chars(options.at.data() + from, options.at.data() + to, number);
+            numbers += campaign_value(number).toml + ", ";
+        }
+        changes.push_back(change_of("--at", "trajectory", fmt::format("{{ kind = \"fixed\", at = [{}] }}", numbers)));
     }
     if (!options.trajectory.empty() && !names_toml(options.trajectory))
         changes.push_back(change_of(
@@ -89,6 +96,9 @@ Result<std::vector<ScenarioChange>> changes_of(const RunOptions& options) {
 
 Result<Scenario> scenario_with_changes(const std::string& file, std::span<const ScenarioChange> changes) {
     if (file.empty() && changes.empty()) return Scenario();
+    for (const ScenarioChange& change : changes)
+        for (std::string_view rest = change.value.toml; !rest.empty(); rest.remove_prefix(utf8_length(rest)))
+            if (utf8_length(rest) == 0) return fail(ErrorCode::usage, change.option + ": is no text in UTF-8");
     ScenarioReading reading =
         file.empty() ? read_with_mistakes("", Scenario().name, changes) : read_file_with_mistakes(file, changes);
     if (!reading.mistakes) return std::move(reading.scenario);

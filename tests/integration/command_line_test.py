@@ -65,6 +65,7 @@ MISUSES = [
     (["compare", "/no/a.csv", "/no/b.csv"], 1, ["/no/a.csv"]),
     (["run", "--scene", "demo", "--time-scale", "2"], 2, ["--time-scale: expected --trajectory TRACK"]),
     (["check", "--output", "json-udp:nowhere"], 2, ["--output: "]),
+    (["check", "--board", "\udcff"], 2, ["--board: is no text in UTF-8"]),
     (["check", "--set", "run.seed=[1]"], 2, ["--set run.seed: is a list; expected a whole number"]),
     (["check", "--set", "sky.constellations=gps"], 2, ["--set sky.constellations: is a text; expected a list"]),
     (["run", "--seed", "-1"], 2, ["--seed: '-1'; expected a whole number from 0 to 18446744073709551615"]),
@@ -370,7 +371,7 @@ what = "the moon rises"
 
     def test_an_option_is_the_key_that_it_names(self):
         scenario = "[run]\nstart = 2026-03-01T00:00:00Z\n"
-        options = ["--duration", "20", "--rate", "5", "--board", "ublox-m9", "--at", "47,8,400", "--start", "2026-03-02"]
+        options = ["--duration", "20", "--rate", "5", "--board", "ublox-m9", "--at", "047,.8e1,400", "--start", "2026-03-02"]
         keys = ["run.duration_s=20", "receiver.0.rate_hz=5", "receiver.0.board=ublox-m9", "trajectory.kind=fixed",
                 "trajectory.at=[47, 8, 400]", "run.start=2026-03-02"]
         with open_folder() as name:

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <set>
 
-#include "detail/campaign_values.hpp"
 #include "detail/scenario_keys.hpp"
+#include "detail/toml_values.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,11 +1,10 @@
-#include "detail/campaign_values.hpp"
+#include "detail/toml_values.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <sstream>
 
-#include "detail/parsed_toml.hpp"
 #include "run/scenario/scenario_changes.hpp"
 
 namespace skyloop {

@@ -180,7 +180,7 @@ void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::
                       modern_preset_names[static_cast<std::size_t>(settings.preset)]);
     const auto surroundings =
         modern.choice("surroundings", surroundings_names,
-                      "where no scene tells: a roof or a field, or a garden between houses and trees",
+                      "where there is no scene: a roof or a field, or a garden between houses and trees",
                       surroundings_names[static_cast<std::size_t>(settings.surroundings)]);
     const bool errors = settings.errors;
     settings = ModernSettings::of(preset ? static_cast<ModernPreset>(*preset) : settings.preset,
@@ -192,7 +192,7 @@ void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::
     modern.table("tracking", "the receiver's loops", [&](TableReader& t) { read_tracking(t, settings.measurement); });
     modern.table("acquisition", "search, lock and loss",
                  [&](TableReader& t) { read_acquisition(t, settings.measurement.acquisition); });
-    modern.table("multipath", "echoes where no scene tells: σ = floor + horizon · exp(−elevation/10°)",
+    modern.table("multipath", "echoes where there is no scene: σ = floor + horizon · exp(−elevation/10°)",
                  [&](TableReader& t) { read_multipath(t, settings.measurement.multipath_model); });
     modern.table("solution", "what the receiver makes of its measurements",
                  [&](TableReader& t) { read_solution(t, settings); });

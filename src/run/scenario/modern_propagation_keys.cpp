@@ -167,7 +167,7 @@ void read_link(TableReader& table, ModernSettings& settings, const std::filesyst
     read_pattern(table, "satellite_table", {"CSV file off_boresight_deg,eirp_dbw in place of these powers", "none"},
                  PatternReading{settings, folder, read_satellite_pattern_file, p.satellite_pattern});
     read_antenna(table, settings, folder);
-    table.quantity("antenna_temperature_k", p.noise.antenna_temperature, {0, 1e5}, "noise that the antenna hears");
+    table.quantity("antenna_temperature_k", p.noise.antenna_temperature, {0, 1e5}, "noise temperature of the antenna");
     table.quantity("line_loss_db", p.noise.line_loss, {0, 100},
                    "between antenna and receiver: weakens the signal, and adds its own noise");
     table.quantity("noise_figure_db", p.noise.noise_figure, {0, 100}, "of the receiver");

@@ -1,4 +1,4 @@
-#include "detail/parsed_toml.hpp"
+#include "detail/toml_values.hpp"
 
 #include <fmt/format.h>
 

@@ -245,10 +245,11 @@ bool has_dice(std::size_t kind) { return shape_kinds.at(kind).dice; }
 void read_vehicle_keys(TableReader& table, VehicleLimits& vehicle) {
     std::array<std::string_view, driven_vehicles.size()> names;
     std::transform(driven_vehicles.begin(), driven_vehicles.end(), names.begin(), vehicle_name);
-    if (const auto kind = table.choice("vehicle", names,
-                                       {"who goes: rounds corners, speeds up, leans (docs/paths.md); waypoints without "
-                                        "any key of a vehicle run at constant speed from corner to corner",
-                                        "multirotor; of drive car"}))
+    if (const auto kind =
+            table.choice("vehicle", names,
+                         {"which vehicle: it rounds corners, speeds up, leans (docs/paths.md); waypoints without "
+                          "any key of a vehicle run at constant speed from corner to corner",
+                          "multirotor; of drive car"}))
         vehicle = usual_limits(driven_vehicles.at(*kind));
     table.number("acceleration_mps2", vehicle.along.acceleration, {1e-3, 500}, {"along the way", "the vehicle's"});
     table.number("jerk_mps3", vehicle.along.jerk, {1e-3, 1e4},

@@ -1,3 +1,4 @@
+// [[receiver]] and [[output]].
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -5,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "detail/config_items.hpp"
 #include "detail/scenario_keys.hpp"
 #include "run/scenario/board_file.hpp"
 
@@ -20,7 +20,7 @@ void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::fi
     receiver.text("board", entry.board, "a profile of `skyloop boards`, or the path of a board file (`.toml`)");
     if (is_board_path(entry.board)) entry.board = (folder / entry.board).string();
     receiver.text_or_texts("port", entry.ports,
-                           {"wires: pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID, hid:VID:PID, usbip:[HOST:]PORT, "
+                           {"ports: pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID, hid:VID:PID, usbip:[HOST:]PORT, "
                             "tcp:[HOST:]PORT[@BAUD], tcp-connect:HOST:PORT[@BAUD], rfc2217:[HOST:]PORT, file:PATH, -, "
                             "client:NAME; NAME= before it says which port",
                             "a pty"});
@@ -113,6 +113,40 @@ void read_base(TableReader& receiver, std::span<const std::string> names, Scenar
         scenario.receivers.back().base = index;
 }
 
+// @return where the output goes; an unchanged one, and a mistake, for a text that is no output
+OutputSettings read_target(TableReader& table) {
+    table.needs_one_of({"to"}, "says nowhere; expected to = \"gps-input:127.0.0.1:14550\"");
+    std::string uri;
+    table.text("to", uri,
+               {"gps-input:HOST:PORT, hil-gps:HOST:PORT, msp-tcp:[HOST:]PORT, msp-tcp-to:HOST:PORT, "
+                "json-udp:HOST:PORT, json-tcp:[HOST:]PORT, json-file:PATH",
+                "none"});
+    if (table.recording() || !table.has("to")) return {};
+    auto settings = parse_output_uri(uri);
+    if (settings) return std::move(*settings);
+    table.mistake("to", settings.error().message);
+    return {};
+}
+
+void read_receiver_of(TableReader& table, const Scenario& scenario, OutputSettings& output) {
+    table.text("receiver", output.receiver,
+               {"name of the receiver whose solution is sent", "all to json, the first to others"});
+    if (output.receiver.empty()) return;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        names.push_back(receiver_name(scenario, i));
+    if (std::find(names.begin(), names.end(), output.receiver) == names.end())
+        table.mistake("receiver", fmt::format("'{}' is no receiver of this scenario; expected one of {}",
+                                              output.receiver, fmt::join(names, ", ")));
+}
+
+void refuse_foreign_keys(TableReader& table, const OutputSettings& output) {
+    if (table.recording() || output.uri.empty()) return;
+    for (const std::string_view key : {"system", "component", "id", "eph"})
+        if (const std::string foreign = foreign_option(output.format, key); table.has(key) && !foreign.empty())
+            table.mistake(key, foreign);
+}
+
 }  // namespace
 
 std::string default_receiver_name(std::size_t index) { return fmt::format("receiver{}", index); }
@@ -147,6 +181,32 @@ void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContex
                                  context, scenario.warnings);
         read_base(receiver, names, scenario);
     });
+}
+
+void read_outputs(TableReader& top, Scenario& scenario) {
+    constexpr NumberRange named{1, 255}, counted{0, 255};
+    top.tables(
+        "output", {"what is sent to other programs beside the receivers' ports (docs/outputs.md)", "none"},
+        [&](TableReader& table) {
+            OutputSettings output = read_target(table);
+            read_receiver_of(table, scenario, output);
+            table.word("when",
+                       {{output_moment_names[0], OutputMoment::report}, {output_moment_names[1], OutputMoment::epoch}},
+                       output.when,
+                       {"when the receiver's own messages of an epoch begin to leave, or as soon as it is solved",
+                        "report; of json epoch"});
+            table.integer("system", output.system, named, "MAVLink: number of the system that sends");
+            table.integer("component", output.component, named, "MAVLink: number of the component that sends");
+            table.integer("id", output.id, counted,
+                          "which receiver of the vehicle this is: gps_id of GPS_INPUT, id of HIL_GPS, instance of MSP");
+            table.word("eph",
+                       {{hil_gps_accuracy_names[0], HilGpsAccuracy::px4_cm},
+                        {hil_gps_accuracy_names[1], HilGpsAccuracy::dop100}},
+                       output.eph,
+                       "what eph and epv of HIL_GPS hold: accuracies in centimetres for PX4, or DOP times 100");
+            refuse_foreign_keys(table, output);
+            scenario.outputs.push_back(std::move(output));
+        });
 }
 
 }  // namespace skyloop

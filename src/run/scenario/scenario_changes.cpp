@@ -10,9 +10,8 @@
 #include <utility>
 
 #include "base/core/text_file.hpp"
-#include "detail/campaign_values.hpp"
-#include "detail/parsed_toml.hpp"
 #include "detail/scenario_keys.hpp"
+#include "detail/toml_values.hpp"
 
 namespace skyloop {
 namespace {

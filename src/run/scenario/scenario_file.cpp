@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 
 #include "base/core/text_file.hpp"
 #include "base/time/utc_time.hpp"
@@ -55,10 +54,9 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
 }
 
 // What a run may be refused for when it is put together.
-void remember_places(TableReader& table, std::string_view name, std::initializer_list<std::string_view> keys,
-                     ToldPlaces& told_at) {
-    for (const std::string_view key : keys)
-        if (table.has(key)) told_at[fmt::format("{}.{}", name, key)] = table.told_at(key);
+void remember_places(TableReader& table, std::string_view name, ToldPlaces& told_at) {
+    for (const std::string& key : table.keys())
+        told_at[fmt::format("{}.{}", name, key)] = table.told_at(key);
 }
 
 bool is_live(const TrajectorySettings& trajectory) { return std::holds_alternative<LiveSettings>(trajectory); }
@@ -88,11 +86,11 @@ std::string told_place(const Scenario& scenario, std::string_view key, std::stri
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
     top.table("run", "when, how long, how fast", [&](TableReader& t) {
         read_run_keys(t, scenario.run);
-        remember_places(t, "run", {"speed"}, scenario.told_at);
+        remember_places(t, "run", scenario.told_at);
     });
     top.table("sky", "which satellites there are", [&](TableReader& t) {
         read_sky_keys(t, scenario.sky, folder);
-        remember_places(t, "sky", {"navigation", "rebase_navigation", "constellations"}, scenario.told_at);
+        remember_places(t, "sky", scenario.told_at);
     });
     const TrajectoryContext context{read_frame(top), folder};
     if (auto path = read_trajectory_keys(top, {"where the vehicle is", "fixed, in Odessa"}, context, scenario.warnings))
@@ -101,11 +99,11 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     top.table("atmosphere", "clouds and rain; and the air of the sensor models", [&](TableReader& t) {
         read_atmosphere_keys(t, scenario, folder);
         scenario.atmosphere_keys = t.keys();
-        remember_places(t, "atmosphere", {"tec_source"}, scenario.told_at);
+        remember_places(t, "atmosphere", scenario.told_at);
     });
     top.table("scene", "buildings and ground around the antenna", [&](TableReader& t) {
         read_scene_keys(t, scenario.scene, folder);
-        remember_places(t, "scene", {"buildings", "terrain"}, scenario.told_at);
+        remember_places(t, "scene", scenario.told_at);
     });
     read_receivers(top, scenario, context);
     if (is_all_live(scenario)) refuse_idle_frame(top);

@@ -31,7 +31,7 @@ void read_surface_material(TableReader& table, std::string& material) {
     std::vector<std::string_view> names;
     for (const SurfaceMaterial& known : surface_materials())
         names.push_back(known.name);
-    if (const auto index = table.choice("material", names, "of surfaces of which the file tells none", material))
+    if (const auto index = table.choice("material", names, "of surfaces that have none in the file", material))
         material = names[*index];
 }
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "base/core/spelling.hpp"
-#include "detail/parsed_toml.hpp"
+#include "detail/toml_values.hpp"
 
 namespace skyloop {
 namespace {

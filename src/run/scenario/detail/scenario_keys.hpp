@@ -1,6 +1,11 @@
 /// The keys of each part of a scenario file, and those that board files share.
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <string_view>
+#include <vector>
+
 #include "base/geo/level_frame.hpp"
 #include "run/scenario/scenario.hpp"
 #include "run/scenario/scenario_changes.hpp"
@@ -36,6 +41,15 @@ void read_export_limits(TableReader& table, Limits& limits, KeyText text = {}) {
         {{"off", ExportLimits::off}, {"and", ExportLimits::both_exceeded}, {"or", ExportLimits::either_exceeded}},
         limits, text);
 }
+
+/// "CFG-RATE-MEAS" and all others.
+std::vector<std::string_view> config_item_names();
+
+/// Reads each key of the table as the value of the item that it names: a whole number within the item's bytes, a number
+/// for R8, true and false or 0 and 1 for L. A name that no item has is a mistake.
+/// @param other a key that is no item, and not read
+/// @return raw values by the items' ids
+std::map<std::uint32_t, std::uint64_t> read_config_items(TableReader& config, std::string_view other = {});
 
 /// What trajectories of one file share.
 struct TrajectoryContext {
