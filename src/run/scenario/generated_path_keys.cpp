@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "detail/trajectory_kinds.hpp"
 
 namespace skyloop {

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 
 #include "detail/scenario_keys.hpp"

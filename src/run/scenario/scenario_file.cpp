@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "base/core/text_file.hpp"
 #include "base/time/utc_time.hpp"

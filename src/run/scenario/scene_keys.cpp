@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <array>
-
 #include "base/core/spelling.hpp"
 #include "detail/scenario_keys.hpp"
 #include "world/propagation/fresnel.hpp"
