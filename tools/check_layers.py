@@ -25,6 +25,7 @@ FENCES = [
                                        "control", "scenario", "tracks", "host"}),
     ("pugixml", ("pugixml",), {"city", "tracks", "src/run/verdict/reports.cpp"}),
     ("libarchive", ("archive.h", "archive_entry.h"), {"core"}),
+    ("PROJ", ("proj.h", "proj/"), {"src/world/city/earth_map.cpp"}),
     ("libosmium", ("osmium/", "protozero/"), {"city"}),
     ("CLI11", ("CLI/", "CLI11"), {"host"}),
     ("GoogleTest", ("gtest/", "gmock/"), set()),

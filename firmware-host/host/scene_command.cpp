@@ -26,7 +26,7 @@ namespace skyloop::host {
 namespace {
 
 struct SceneOptions {
-    std::string file, at, origin, file_origin, axes, svg, sky_svg;
+    std::string file, at, origin, file_origin, file_crs, axes, svg, sky_svg;
     double unit_m = 1;
     bool json = false;
     Verbosity verbosity;
@@ -80,6 +80,11 @@ Result<SceneEntry> scene_entry(const SceneOptions& options) {
         const auto place = parse_file_origin(options.file_origin);
         if (!place) return fail(place.error());
         entry.reading.file_origin = *place;
+    }
+    if (!options.file_crs.empty()) {
+        if (const auto known = check_file_crs(options.file_crs); !known)
+            return fail(known.error().code, fmt::format("--file-crs: {}", known.error().message));
+        entry.reading.file_crs = options.file_crs;
     }
     if (!options.axes.empty()) {
         const auto axes = FileAxes::parse(options.axes);
@@ -289,6 +294,8 @@ Action add_scene_command(CLI::App& app) {
     command->add_option("--origin", options->origin, "Where the origin of its coordinates lies: LAT,LON[,HEIGHT]");
     command->add_option("--file-origin", options->file_origin,
                         "Which place of a mesh lies at the origin, in units and axes of the file: X,Y,Z");
+    command->add_option("--file-crs", options->file_crs,
+                        "Reference system of its coordinates, in place of what it names: EPSG:25832; local: none");
     command->add_option("--axes", options->axes, "Axes of the file for east, north and up: x,y,z; Unreal: y,x,z");
     command->add_option("--unit-m", options->unit_m, "Metres of one unit of the file, default 1");
     command->add_option("--svg", options->svg, "File for a top view");

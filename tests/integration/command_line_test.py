@@ -26,6 +26,7 @@ MISUSES = [
     (["run", "--scene", "x.doc"], 2, ["x.doc", "ending"]),
     (["scene", "/no/such/x.obj"], 1, ["/no/such/x.obj"]),
     (["scene", "demo", "--axes", "x,y"], 2, ["--axes x,y"]),
+    (["scene", "demo", "--file-crs", "EPSG:99999"], 2, ["--file-crs: 'EPSG:99999' is no reference system", "EPSG:25832"]),
     (["scene", "demo", "--origin", "91,0"], 2, ["--origin 91,0", "latitude is 91"]),
     (["scene", "demo", "--sky-svg", "x.svg"], 2, ["--sky-svg", "--at"]),
     (["run", "--control", "nowhere"], 2, ["nowhere"]),

@@ -1,6 +1,7 @@
 """Buildings in a run: satellites are blocked and reflected, and the same run gives the same bytes."""
 import csv
 import json
+import os
 import pathlib
 import time
 import unittest
@@ -108,6 +109,20 @@ class SceneTest(unittest.TestCase):
             wrong = skyloop("scene", walls, "--file-origin", "392118,5820064", check=False)
             self.assertEqual(wrong.returncode, 2)
             self.assertIn("expected X,Y,Z of the file", wrong.stderr)
+
+    def test_a_model_in_the_coordinates_of_a_map_that_is_named_lies_there(self):
+        with open_folder() as folder:
+            walls = pathlib.Path(folder, "walls.obj")
+            walls.write_text("v 84868 447577 1\nv 84888 447597 1\nv 84888 447597 9\nv 84868 447577 9\nf 1 2 3 4\n", encoding="ascii")
+            named = ["scene", walls, "--file-crs", "EPSG:28992", "--json"]
+            told = json.loads(skyloop(*named).stdout)
+            # echo 84878 447587 | PROJ_NETWORK=OFF cs2cs -f %.7f EPSG:28992 EPSG:4326
+            self.assertAlmostEqual(told["origin"][0], 52.0122091, delta=1e-5)
+            self.assertAlmostEqual(told["origin"][1], 4.3657866, delta=1e-5)
+            missing = skyloop(*named, check=False, env={**os.environ, "PROJ_DATA": folder, "PROJ_LIB": folder, "HOME": folder})
+            self.assertIn(missing.returncode, (1, 2))
+            self.assertIn("PROJ's database proj.db is missing: install the package proj-data", missing.stderr)
+            self.assertEqual(missing.stderr.count("\n"), 1, missing.stderr)
 
     def test_check_reads_the_scene(self):
         self.assertIn("scene       demo, ", skyloop("check", "--scene", "demo").stdout)

@@ -21,9 +21,10 @@ def skip(reason):
     sys.exit(SKIPPED)
 
 
-def skyloop(*arguments, check=True, patience=120):
+def skyloop(*arguments, check=True, patience=120, env=None):
     """Runs the program to its end; gives the finished process with its text."""
-    done = subprocess.run([SKYLOOP, *map(str, arguments)], capture_output=True, text=True, timeout=patience)
+    done = subprocess.run([SKYLOOP, *map(str, arguments)], capture_output=True, text=True, timeout=patience,
+                          env=env)
     if check and done.returncode != 0:
         raise AssertionError(f"skyloop {' '.join(map(str, arguments))} ended {done.returncode}: {done.stderr}")
     return done

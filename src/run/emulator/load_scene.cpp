@@ -76,6 +76,7 @@ Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFi
     settings.origin = reading.origin;
     settings.origin_is_guess = reading.origin_is_guess;
     settings.anchor = reading.anchor;
+    settings.file_crs = reading.file_crs;
     settings.heights = reading.heights;
     settings.geoid = reading.geoid;
     settings.material = terrain_material;
@@ -83,7 +84,7 @@ Result<CityReading> read_terrain(const std::filesystem::path& path, const CityFi
     settings.memory_limit = reading.memory_limit;
     auto grid = read_city(path, settings, cache);
     if (grid && grid->file.format != "height grid")
-        return fail(ErrorCode::input, fmt::format("{}: is of format {}; expected terrain as a height grid (.asc)",
+        return fail(ErrorCode::input, fmt::format("{}: is of format {}; expected terrain as a height grid (.asc, .tif)",
                                                   path.string(), grid->file.format));
     return grid;
 }
@@ -134,7 +135,9 @@ enum class OpenPlace { nothing, place, ground };
 OpenPlace left_open_by(const SceneEntry& entry, std::string_view format) {
     constexpr std::array<std::string_view, 4> local{"obj", "ply", "gltf", "mitsuba"};
     constexpr std::array<std::string_view, 3> outlines{"osm", "osm.pbf", "geojson"};
-    if (std::ranges::count(local, format) > 0) return OpenPlace::place;
+    const std::string& crs = entry.reading.file_crs;
+    if (std::ranges::count(local, format) > 0)
+        return crs.empty() || crs == "local" ? OpenPlace::place : OpenPlace::nothing;
     return std::ranges::count(outlines, format) > 0 && entry.terrain.empty() ? OpenPlace::ground : OpenPlace::nothing;
 }
 

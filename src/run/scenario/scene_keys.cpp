@@ -17,8 +17,8 @@ void read_scene_files(TableReader& table, SceneEntry& scene, const std::filesyst
     }
     if (table.has("terrain")) {
         std::string file;
-        table.text("terrain", file, {"height grid (.asc) that becomes ground", "none"});
-        if (file.empty()) table.mistake("terrain", "is an empty text; expected a height grid (.asc)");
+        table.text("terrain", file, {"height grid (.asc .tif) that becomes ground", "none"});
+        if (file.empty()) table.mistake("terrain", "is an empty text; expected a height grid (.asc, .tif)");
         scene.terrain = folder / file;
     }
     table.needs_one_of({"buildings", "terrain"},
@@ -50,6 +50,17 @@ void read_file_keys(TableReader& table, CityFileSettings& reading) {
             reading.axes = *axes;
         else
             table.mistake("axes", axes.error().message);
+    }
+    if (table.has("file_crs")) {
+        std::string name = "local";  // stays where the value is no text
+        table.text("file_crs", name,
+                   {"reference system of the files where they name none or a wrong one: \"EPSG:25832\", \"EPSG:7415\"; "
+                    "\"local\": metres of no map",
+                    "as the files say"});
+        if (const auto known = check_file_crs(name); known)
+            reading.file_crs = name;
+        else
+            table.mistake("file_crs", known.error().message);
     }
     table.word("heights", {{"sea_level", CityHeights::sea_level}, {"ellipsoid", CityHeights::ellipsoid}},
                reading.heights,

@@ -11,13 +11,14 @@
 #include "base/core/digest.hpp"
 #include "base/core/replace_file.hpp"
 #include "detail/companion_files.hpp"
+#include "detail/earth_map.hpp"
 
 namespace skyloop {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int meaning_version = 14;  // of what readers make of a file; one more when any of them makes something else
+constexpr int meaning_version = 15;  // of what readers make of a file; one more when any of them makes something else
 
 std::uint64_t cache_key(std::uint64_t source, const CityFileSettings& s) {
     std::string text = fmt::format("{} {:016x} {} {} {} {} {}", meaning_version, source, s.metres_per_unit, s.material,
@@ -27,6 +28,7 @@ std::uint64_t cache_key(std::uint64_t source, const CityFileSettings& s) {
                             s.origin->height.above_ellipsoid.value());
     text += fmt::format(" less {} {} {}", s.file_origin.x(), s.file_origin.y(), s.file_origin.z());
     text += fmt::format(" heights {} {}", static_cast<int>(s.heights), s.geoid != nullptr);
+    text += fmt::format(" crs {} {:016x}", s.file_crs, proj_data_digest());
     if (s.origin_is_guess) text += " guessed";
     if (s.anchor)
         text += fmt::format(" beside {} {} {} {}", s.anchor->system, s.anchor->east, s.anchor->north,

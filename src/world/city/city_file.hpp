@@ -44,10 +44,13 @@ enum class CityHeights {
 /// How a file is to be read.
 struct CityFileSettings {
     /// Where the frame lies. When it is absent, files with places on the Earth take the middle of what they hold; local
-    /// ones, and those of a map projection that is not known, lie at 0° N 0° E, the latter with a warning.
+    /// ones, and those of a map that PROJ does not know, lie at 0° N 0° E, the latter with a warning.
     std::optional<Geodetic> origin;
     bool origin_is_guess = false;     ///< for what warnings say
     std::optional<MapAnchor> anchor;  ///< of a file of the same scene that was read before, beside which this one lies
+    /// In place of the reference system that a file names or leaves out: whatever PROJ reads, such as
+    /// "EPSG:25832+7837", or "local": metres of no map. Empty: as told.
+    std::string file_crs;
     CityHeights heights = CityHeights::as_told;
     const Geoid* geoid = nullptr;  ///< without one heights above the sea are taken as they stand
     /// Which place of a mesh lies at the frame's origin, in units and axes of the file: meshes in coordinates of a map.
@@ -60,6 +63,9 @@ struct CityFileSettings {
     std::size_t most_triangles = 50'000'000;  ///< a file with more is refused with an estimate of its memory
     std::size_t memory_limit = 0;             ///< of the scene, bytes: no file may hold more; 0: none
 };
+
+/// Fails with `usage` and what is wrong with a value of CityFileSettings::file_crs.
+Result<void> check_file_crs(std::string_view name);
 
 /// A file that a city names and that was read with it.
 struct CityCompanion {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/core/middle.hpp"
+#include "detail/city_text.hpp"
 #include "detail/convex_hull.hpp"
 #include "world/city/footprint.hpp"
 
@@ -246,9 +247,9 @@ PlaceOnEarth::Extent exchanged(PlaceOnEarth::Extent extent) {
 
 /// Whether numbers are degrees though their system is none that is known, by themselves. Those of EPSG stand in its
 /// order, latitude first, others with the longitude first unless that is too great for a latitude.
-bool turn_out_to_be_degrees(std::vector<CityObject>& objects, const ReferenceSystem& system) {
+bool turn_out_to_be_degrees(std::vector<CityObject>& objects, bool latitude_first) {
     const PlaceOnEarth::Extent extent = extent_of(objects);
-    const bool exchange = system.code || (std::abs(extent.middle().y()) > 90 && std::abs(extent.middle().x()) <= 90);
+    const bool exchange = latitude_first || (std::abs(extent.middle().y()) > 90 && std::abs(extent.middle().x()) <= 90);
     if (!(exchange ? exchanged(extent) : extent).is_of_degrees()) return false;
     if (exchange) exchange_axes(objects);
     return true;
@@ -262,19 +263,26 @@ bool turn_out_to_be_exchanged(std::vector<CityObject>& objects) {
     return true;
 }
 
-/// The system of what was read; longitudes lie together afterwards.
-ReferenceSystem settle_system(CityObjects& read, std::vector<std::string>& warnings) {
-    ReferenceSystem system =
-        read.system.value_or(ReferenceSystem{CoordinateKind::projected, false, "unnamed", {}, false});
-    if (system.kind == CoordinateKind::projected && turn_out_to_be_degrees(read.objects, system)) {
-        warnings.push_back(fmt::format("coordinates ({}) are taken as degrees of WGS-84, {} first", system.name,
-                                       system.code ? "latitude" : "longitude"));
-        system.kind = CoordinateKind::geographic;
+/// The system of what was read; east stands first and longitudes lie together afterwards.
+ReferenceSystem settle_system(CityObjects& read, std::vector<std::string>& warnings, const CityFileSettings& settings) {
+    ReferenceSystem system = read.system.value_or(unnamed_system(CoordinateKind::projected));
+    const bool of_epsg = system.name.starts_with("EPSG:");
+    if (system.kind == CoordinateKind::projected && turn_out_to_be_degrees(read.objects, of_epsg)) {
+        warnings.push_back(fmt::format("coordinates ({}) are taken as degrees of WGS-84, {} first", shown(system.name),
+                                       of_epsg ? "latitude" : "longitude"));
+        return wgs84_degrees(system.name);
+    }
+    if (system.north_first) exchange_axes(read.objects);
+    if (system.map && system.kind == CoordinateKind::projected &&
+        PlaceOnEarth::stands_exchanged(system, extent_of(read.objects).middle(), settings)) {
+        exchange_axes(read.objects);
+        warnings.push_back(fmt::format("coordinates ({}) stand {} first, by where they lie", shown(system.name),
+                                       system.north_first ? "east" : "north"));
     }
     if (system.kind == CoordinateKind::geographic) {
         if (turn_out_to_be_exchanged(read.objects))
-            warnings.push_back(fmt::format("coordinates ({}) stand {} first, against their system", system.name,
-                                           system.latitude_first ? "longitude" : "latitude"));
+            warnings.push_back(fmt::format("coordinates ({}) stand {} first, against their system", shown(system.name),
+                                           system.north_first ? "longitude" : "latitude"));
         LongitudeTurn turn;
         change_points(read.objects, [&](Eigen::Vector3d& point) { point.x() = turn(point.x()); });
     }
@@ -342,7 +350,7 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     file.format = format;
     file.dropped = read.dropped;
     file.warnings = std::move(read.warnings);
-    const ReferenceSystem system = settle_system(read, file.warnings);
+    const ReferenceSystem system = settle_system(read, file.warnings, settings);
     lay_shapes(read.objects, system.kind);
     const auto extent = extent_of(read.objects);
     const std::string outlines = told_by_outlines(read.objects);
@@ -352,13 +360,14 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     if (!outlines.empty()) file.warnings.push_back(outlines);
     const double ground = ground_level(read.objects);
     const auto place = PlaceOnEarth::make(system, extent, ground, settings);
-    if (!place) return fail(place.error().code, fmt::format("{}: {}: {}", name, system.name, place.error().message));
+    if (!place)
+        return fail(place.error().code, fmt::format("{}: {}: {}", name, shown(system.name), place.error().message));
     file.model.origin = place->origin();
     for (std::string& warning : PlaceOnEarth::unused_settings(system, settings))
         file.warnings.push_back(std::move(warning));
     file.anchor = place->anchor();
-    for (std::string doubt : {place->doubt_of_map(settings), PlaceOnEarth::doubt_of_heights(system, settings)})
-        if (!doubt.empty()) file.warnings.push_back(std::move(doubt));
+    for (std::string& doubt : place->doubts(settings, true))
+        file.warnings.push_back(std::move(doubt));
     const std::vector<bool> replaced = replaced_objects(read.objects);
     ObjectBuilder builder(file, settings);
     std::set<std::size_t> buildings;

@@ -145,7 +145,8 @@ CityGmlReader::Context CityGmlReader::entered(const pugi::xml_node& node, Contex
 
 void CityGmlReader::take_system(const pugi::xml_node& node) {
     if (found_.system) return;
-    if (const pugi::xml_attribute system = node.attribute("srsName")) found_.system = reference_system(system.value());
+    if (const pugi::xml_attribute system = node.attribute("srsName"))
+        found_.system = reference_system_of_file(system.value(), settings_);
 }
 
 void CityGmlReader::visit(const pugi::xml_node& node, Context context) {
@@ -176,7 +177,6 @@ std::optional<CityGmlReader::Implicit> CityGmlReader::read_implicit(const pugi::
     if (!read_numbers(child_named(node, "transformationMatrix").child_value(), matrix) || matrix.size() != 16 ||
         !read_numbers(child_named(point, "pos").child_value(), place) || place.size() != 3)
         return std::nullopt;
-    if (found_.system && found_.system->latitude_first) std::swap(place[0], place[1]);
     // Row by row; the last one is that of homogeneous coordinates.
     return Implicit{Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(matrix.data()),
                     Eigen::Vector3d(place[0], place[1], place[2])};
@@ -233,9 +233,8 @@ bool CityGmlReader::read_ring(const pugi::xml_node& node, std::vector<Eigen::Vec
             if (const pugi::xml_attribute given = list.attribute("srsDimension")) dimension = given.as_int();
         }
     if (dimension != 3 || numbers.size() < 9 || numbers.size() % 3 != 0) return false;
-    const bool swap = !implicit && found_.system && found_.system->latitude_first;
     for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
-        ring.emplace_back(numbers[i + (swap ? 1 : 0)], numbers[i + (swap ? 0 : 1)], numbers[i + 2]);
+        ring.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
         if (implicit) ring.back() = implicit->matrix * ring.back().homogeneous();
     }
     return true;
@@ -271,6 +270,7 @@ Result<CityObjects> CityGmlReader::read(const pugi::xml_document& document, std:
         return fail(ErrorCode::input, fmt::format("{}: the root element is <{}>, expected <CityModel> of CityGML", name,
                                                   shown(root_.name())));
     visit(root_, {});
+    if (!found_.system) found_.system = reference_system_of_file("", settings_);
     if (too_deep_)
         return fail(ErrorCode::input, fmt::format("{}: elements nest deeper than {} levels", name, deepest_elements));
     if (shaped_ > settings_.most_triangles) return too_many_triangles(name, settings_);

@@ -58,9 +58,7 @@ std::string CityJsonReader::read_vertices() {
     for (const json& vertex : vertices) {
         Eigen::Vector3d place;
         if (!number_triple(vertex, place)) return fmt::format("vertex {} is not of three numbers", vertices_.size());
-        place = place.cwiseProduct(scale) + shift;
-        if (found_.system && found_.system->latitude_first) std::swap(place.x(), place.y());
-        vertices_.push_back(place);
+        vertices_.push_back(place.cwiseProduct(scale) + shift);
     }
     return {};
 }
@@ -168,11 +166,17 @@ void CityJsonReader::link_parts(const std::unordered_map<std::string, std::size_
     }
 }
 
+/// Of its metadata. Maps have the easting first whatever the registry says, as cjio writes them.
+std::optional<ReferenceSystem> system_told(const json& metadata, const CityFileSettings& settings) {
+    const json& epsg = member(member(metadata, "crs"), "epsg");
+    auto system = epsg.is_number_unsigned()
+                      ? reference_system_of_file(fmt::format("EPSG:{}", epsg.get<std::uint64_t>()), settings)
+                      : reference_system_of_file(text_member(metadata, "referenceSystem"), settings);
+    if (system && system->kind == CoordinateKind::projected) system->north_first = false;
+    return system;
+}
+
 Result<CityObjects> CityJsonReader::read() {
-    const json& metadata = member(root_, "metadata");
-    found_.system = reference_system(text_member(metadata, "referenceSystem"));
-    if (const json& epsg = member(member(metadata, "crs"), "epsg"); epsg.is_number_unsigned())
-        found_.system = reference_system(fmt::format("EPSG:{}", epsg.get<std::uint64_t>()));
     if (const std::string problem = read_vertices(); !problem.empty())
         return fail(ErrorCode::input, fmt::format("{}: {}", name_, problem));
     const json& objects = member(root_, "CityObjects");
@@ -192,7 +196,8 @@ Result<CityObjects> CityJsonReader::read() {
 // corners of its own.
 class CityJsonSequence {
 public:
-    CityJsonSequence(std::string_view text, std::string_view name) : text_(text), name_(name) {}
+    CityJsonSequence(std::string_view text, std::string_view name, const CityFileSettings& settings)
+        : text_(text), name_(name), settings_(settings) {}
     Result<CityObjects> read();
 
 private:
@@ -200,7 +205,8 @@ private:
     void add(CityObjects part);
 
     std::string_view text_, name_;
-    json transform_, metadata_;
+    const CityFileSettings& settings_;
+    json transform_;
     bool begun_ = false;
     CityObjects found_;
 };
@@ -215,7 +221,6 @@ void CityJsonSequence::add(CityObjects part) {
     for (std::string& warning : part.warnings)
         if (std::find(found_.warnings.begin(), found_.warnings.end(), warning) == found_.warnings.end())
             found_.warnings.push_back(std::move(warning));
-    if (!begun_) found_.system = std::move(part.system);
 }
 
 Result<void> CityJsonSequence::take_line(std::string_view line, const std::string& where) {
@@ -227,10 +232,9 @@ Result<void> CityJsonSequence::take_line(std::string_view line, const std::strin
                     fmt::format("{}: \"type\" is \"{}\", expected \"{}\"", where, shown(type), expected));
     if (begun_) {
         (*root)["transform"] = transform_;
-        (*root)["metadata"] = metadata_;
     } else {
         transform_ = member(*root, "transform");
-        metadata_ = member(*root, "metadata");
+        found_.system = system_told(member(*root, "metadata"), settings_);
     }
     auto part = CityJsonReader(*root, where).read();
     if (!part) return fail(part.error());
@@ -266,12 +270,13 @@ Result<CityFile> parse_cityjson(std::string_view text, std::string_view name, co
                                                   shown(text_member(*root, "type"))));
     auto objects = CityJsonReader(*root, name).read();
     if (!objects) return fail(objects.error());
+    objects->system = system_told(member(*root, "metadata"), settings);
     return city_of_objects(std::move(*objects), "cityjson", name, settings);
 }
 
 Result<CityFile> parse_cityjson_sequence(std::string_view text, std::string_view name,
                                          const CityFileSettings& settings) {
-    auto objects = CityJsonSequence(text, name).read();
+    auto objects = CityJsonSequence(text, name, settings).read();
     if (!objects) return fail(objects.error());
     return city_of_objects(std::move(*objects), "cityjson", name, settings);
 }

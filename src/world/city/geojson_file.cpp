@@ -155,19 +155,20 @@ bool are_in_degrees(const std::vector<Outline>& outlines) {
 }
 
 ReferenceSystem GeoJsonReader::find_system(const json& root) const {
-    auto named = reference_system(text_member(member(member(root, "crs"), "properties"), "name"));
+    auto named = reference_system_of_file(text_member(member(member(root, "crs"), "properties"), "name"), settings_);
     // GeoJSON writes longitude first whatever the system says.
-    if (named) named->latitude_first = false;
+    if (named) named->north_first = false;
     if (named && named->kind == CoordinateKind::geographic) return *named;
     PlaceOnEarth::Extent extent;
     for (const Outline& outline : found_.outlines)
         for (const Eigen::Vector2d& point : outline.footprint.outer)
             extent.include(point);
     if (named ? extent.is_of_degrees() : are_in_degrees(found_.outlines))
-        return {CoordinateKind::geographic, false, named ? named->name : "degrees", {}};
+        return wgs84_degrees(named ? named->name : "degrees");
+    if (named && named->map) return *named;
     const double farthest =
         extent.empty() ? 0 : std::max(extent.lowest.cwiseAbs().maxCoeff(), extent.highest.cwiseAbs().maxCoeff());
-    ReferenceSystem metres = named.value_or(ReferenceSystem{CoordinateKind::local, false, "metres", {}, false});
+    ReferenceSystem metres = named.value_or(unnamed_system(CoordinateKind::local, "metres"));
     metres.kind = farthest > farthest_local ? CoordinateKind::projected : CoordinateKind::local;
     return metres;
 }
@@ -202,7 +203,7 @@ Result<Outlines> GeoJsonReader::read(const json& root) {
     found_.system = find_system(root);
     if (found_.system.kind == CoordinateKind::local)
         found_.warnings.push_back(
-            fmt::format("coordinates are taken as metres ({}) from the origin", found_.system.name));
+            fmt::format("coordinates are taken as metres ({}) from the origin", shown(found_.system.name)));
     if (other_shapes_ + other_uses_ > 0)
         found_.warnings.push_back(
             fmt::format("{} shapes that are no polygons and {} features that are no buildings or "

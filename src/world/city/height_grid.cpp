@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "base/core/lowered_text.hpp"
-#include "base/core/middle.hpp"
 #include "detail/city_text.hpp"
+#include "detail/height_grid.hpp"
 #include "detail/place_on_earth.hpp"
 #include "world/city/city_file.hpp"
 
@@ -21,17 +20,9 @@ constexpr double largest_geographic_cell = 0.1;
 constexpr double widest_geographic_grid = 6;
 
 struct HeightGridHeader {
-    std::size_t columns = 0, rows = 0;
     double west = 0, south = 0;       ///< of the middle of the south-western cell
     double cell = 0, cell_north = 0;  ///< how wide and how tall a cell is
     double no_data = -9999;           ///< where the header names none (Esri, "ESRI ASCII raster format")
-    [[nodiscard]] bool geographic() const {
-        const double east = west + static_cast<double>(columns) * cell,
-                     north = south + static_cast<double>(rows) * cell_north;
-        return std::max(cell, cell_north) <= largest_geographic_cell &&
-               std::max(east - west, north - south) <= widest_geographic_grid && west >= -180 && east <= 361 &&
-               south >= -90 && north <= 91;
-    }
 };
 
 // Of the keys of a header, in the order in which they are known.
@@ -43,25 +34,35 @@ public:
     HeightGridReader(std::string_view text, std::string_view name, const CityFileSettings& settings)
         : text_(text), name_(name), settings_(settings), at_(text.data()), end_(at_ + text.size()) {}
 
-    Result<CityFile> read() {
+    Result<HeightGrid> read() {
         if (auto done = read_header(); !done) return fail(std::move(done.error()));
         if (auto done = read_heights(); !done) return fail(std::move(done.error()));
-        if (auto done = place_cells(); !done) return fail(std::move(done.error()));
-        join_cells();
-        if (file_.model.triangles.empty())
-            return fail(ErrorCode::input, fmt::format("{}: no four neighbours have a height", name_));
-        file_.format = "height grid";
-        if (file_.dropped > 0)
-            file_.warnings.push_back(
-                fmt::format("{}: {} heights are no numbers and were left out", name_, file_.dropped));
-        if (settings_.file_origin != Eigen::Vector3d::Zero() && !settings_.anchor)
-            file_.warnings.push_back(fmt::format("{}: {}", name_, file_origin_unused));
-        if (settings_.axes)
-            file_.warnings.push_back(fmt::format("{}: axes mean nothing for a height grid, north is up there", name_));
-        return std::move(file_);
+        grid_.system = reference_system_of_file("", settings_);
+        const bool local =
+            std::max(std::abs(header_.west), std::abs(header_.south)) * settings_.metres_per_unit <= farthest_local;
+        // Metres that far from 0, 0 are those of a map; the grid does not say of which.
+        const bool no_map = grid_.system && !grid_.system->named;
+        const bool degrees = !no_map && geographic();  // also where the buildings' map is named
+        if (!grid_.system || no_map || (degrees && grid_.system->kind != CoordinateKind::geographic))
+            grid_.system = unnamed_system(degrees ? CoordinateKind::geographic
+                                          : local ? CoordinateKind::local
+                                                  : CoordinateKind::projected);
+        const double unit = grid_.system->lies_on_earth() ? 1 : settings_.metres_per_unit;
+        grid_.first = unit * Eigen::Vector2d(header_.west,
+                                             header_.south + header_.cell_north * static_cast<double>(grid_.rows - 1));
+        grid_.next_column = {unit * header_.cell, 0};
+        grid_.next_row = {0, -unit * header_.cell_north};
+        return std::move(grid_);
     }
 
 private:
+    [[nodiscard]] bool geographic() const {
+        const double width = static_cast<double>(grid_.columns) * header_.cell,
+                     height = static_cast<double>(grid_.rows) * header_.cell_north;
+        return std::max(header_.cell, header_.cell_north) <= largest_geographic_cell &&
+               std::max(width, height) <= widest_geographic_grid && header_.west >= -180 &&
+               header_.west + width <= 361 && header_.south >= -90 && header_.south + height <= 91;
+    }
     [[nodiscard]] std::string here() const {
         return line_place(name_, text_, static_cast<std::size_t>(at_ - text_.data()));
     }
@@ -132,8 +133,8 @@ private:
             return fail(ErrorCode::input,
                         has(2) ? fmt::format("{}: cellsize {}; expected more than 0", name_, cell)
                                : fmt::format("{}: dx {} and dy {}; expected more than 0", name_, cell, cell_north));
-        header_.columns = static_cast<std::size_t>(values[0]);
-        header_.rows = static_cast<std::size_t>(values[1]);
+        grid_.columns = static_cast<std::size_t>(values[0]);
+        grid_.rows = static_cast<std::size_t>(values[1]);
         header_.cell = cell;
         header_.cell_north = cell_north;
         header_.west = has(5) ? values[5] : values[3] + cell / 2;
@@ -142,107 +143,27 @@ private:
         if (!(std::abs(header_.west) < 1e9 && std::abs(header_.south) < 1e9))
             return fail(ErrorCode::input,
                         fmt::format("{}: its corner {}, {} lies nowhere", name_, header_.west, header_.south));
-        const std::size_t cells = header_.columns * header_.rows;
-        const std::size_t triangles = 2 * (header_.columns - 1) * (header_.rows - 1);
-        if (triangles > settings_.most_triangles || cells > std::numeric_limits<std::uint32_t>::max())
-            return fail(
-                ErrorCode::input,
-                fmt::format("{}: holds {} triangles, {} are the most that is read ({} would take {:.3g} GB of memory)",
-                            name_, triangles, settings_.most_triangles, triangles,
-                            static_cast<double>(triangles * sizeof(CityTriangle) + cells * 24) / 1e9));
+        if (auto done = check_grid_size(grid_, name_, settings_); !done) return done;
+        const std::size_t cells = grid_.columns * grid_.rows;
         const auto left = static_cast<std::size_t>(end_ - at_);
         if (cells > (left + 1) / 2)
             return fail(ErrorCode::input, fmt::format("{}: tells of {} by {} cells, but {} bytes are left", name_,
-                                                      header_.columns, header_.rows, left));
+                                                      grid_.columns, grid_.rows, left));
         return {};
     }
 
-    // Rows from north to south; a height that is absent or no number is NaN afterwards.
+    // Rows from north to south.
     Result<void> read_heights() {
-        heights_.reserve(header_.columns * header_.rows);
-        for (std::size_t i = 0; i < header_.columns * header_.rows; ++i) {
+        grid_.heights.reserve(grid_.columns * grid_.rows);
+        for (std::size_t i = 0; i < grid_.columns * grid_.rows; ++i) {
             const auto height = next_number("a height");
             if (!height) return fail(height.error());
-            const bool absent = *height == header_.no_data;
-            const double metres = *height * settings_.metres_per_unit;
-            const bool usable = std::abs(metres) < 1e6;
-            if (!absent && !usable) ++file_.dropped;
-            heights_.push_back(absent || !usable ? std::nan("") : metres);
+            grid_.heights.push_back(grid_.usable(*height, *height == header_.no_data, settings_));
         }
         if (const std::string_view more = next_word(); !more.empty())
             return fail(ErrorCode::input, fmt::format("{}: found '{}' after the last of {} by {} heights", here(),
-                                                      shown(more), header_.columns, header_.rows));
+                                                      shown(more), grid_.columns, grid_.rows));
         return {};
-    }
-
-    // Metres that far from 0, 0 are those of a map; the grid does not say of which.
-    [[nodiscard]] bool of_a_map() const {
-        return !header_.geographic() &&
-               std::max(std::abs(header_.west), std::abs(header_.south)) * settings_.metres_per_unit > farthest_local;
-    }
-    [[nodiscard]] double middle_height() const {
-        std::vector<double> heights;
-        std::copy_if(heights_.begin(), heights_.end(), std::back_inserter(heights),
-                     [](double h) { return !std::isnan(h); });
-        return heights.empty() ? 0 : middle_of(heights);
-    }
-    [[nodiscard]] Eigen::Vector2d middle_of_cell(std::size_t column, std::size_t row) const {
-        const double unit = header_.geographic() ? 1 : settings_.metres_per_unit;
-        return Eigen::Vector2d(header_.west + header_.cell * static_cast<double>(column),
-                               header_.south + header_.cell_north * static_cast<double>(header_.rows - 1 - row)) *
-               unit;
-    }
-    Result<PlaceOnEarth> find_place() {
-        const CoordinateKind kind = header_.geographic() ? CoordinateKind::geographic
-                                    : of_a_map()         ? CoordinateKind::projected
-                                                         : CoordinateKind::local;
-        PlaceOnEarth::Extent extent;
-        extent.include(middle_of_cell(0, 0));
-        extent.include(middle_of_cell(header_.columns - 1, header_.rows - 1));
-        const ReferenceSystem system{kind, false, "unnamed", {}, false};
-        if (std::string doubt = PlaceOnEarth::doubt_of_heights(system, settings_); !doubt.empty())
-            file_.warnings.push_back(fmt::format("{}: {}", name_, doubt));
-        CityFileSettings settings = settings_;
-        settings.metres_per_unit = 1;  // has been applied to all numbers
-        return PlaceOnEarth::make(system, extent, of_a_map() ? middle_height() : 0, settings);
-    }
-
-    Result<void> place_cells() {
-        const auto place = find_place();
-        if (!place) return fail(place.error().code, fmt::format("{}: {}", name_, place.error().message));
-        file_.model.origin = place->origin();
-        file_.anchor = place->anchor();
-        if (std::string doubt = place->doubt_of_map(settings_); !doubt.empty())
-            file_.warnings.push_back(fmt::format("{}: {}", name_, doubt));
-        file_.model.materials = {settings_.material};
-        numbers_.assign(heights_.size(), ~0U);
-        for (std::size_t i = 0; i < heights_.size(); ++i) {
-            if (std::isnan(heights_[i])) continue;
-            const Eigen::Vector2d middle = middle_of_cell(i % header_.columns, i / header_.columns);
-            numbers_[i] = static_cast<std::uint32_t>(file_.model.vertices.size());
-            file_.model.vertices.push_back((*place)({middle.x(), middle.y(), heights_[i]}));
-        }
-        return {};
-    }
-
-    // Two triangles between four neighbours; one where a fourth is absent.
-    void join_cells() {
-        const std::size_t columns = header_.columns;
-        for (std::size_t row = 0; row + 1 < header_.rows; ++row)
-            for (std::size_t column = 0; column + 1 < columns; ++column) {
-                const std::size_t north_west = row * columns + column, south_west = north_west + columns;
-                const std::array<std::uint32_t, 4> around{numbers_[south_west], numbers_[south_west + 1],
-                                                          numbers_[north_west + 1], numbers_[north_west]};
-                // Along the diagonal whose ends have heights.
-                const std::size_t turn = around[0] == ~0U || around[2] == ~0U ? 1 : 0;
-                add_ground({around[turn], around[turn + 1], around[turn + 2]});
-                add_ground({around[turn], around[turn + 2], around[(turn + 3) % 4]});
-            }
-    }
-    void add_ground(const std::array<std::uint32_t, 3>& corners) {
-        for (const std::uint32_t corner : corners)
-            if (corner == ~0U) return;
-        file_.model.triangles.push_back({corners, SurfaceKind::ground, 0});
     }
 
     std::string_view text_, name_;
@@ -250,15 +171,15 @@ private:
     const char* at_;
     const char* end_;
     HeightGridHeader header_;
-    std::vector<double> heights_;
-    std::vector<std::uint32_t> numbers_;  // of vertices, by cell
-    CityFile file_;
+    HeightGrid grid_;
 };
 
 }  // namespace
 
 Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings) {
-    return HeightGridReader(without_byte_order_mark(text), name, settings).read();
+    auto grid = HeightGridReader(without_byte_order_mark(text), name, settings).read();
+    if (!grid) return fail(grid.error());
+    return city_of_grid(std::move(*grid), name, settings);
 }
 
 }  // namespace skyloop

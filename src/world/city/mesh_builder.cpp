@@ -44,6 +44,8 @@ bool fan_covers(std::span<const std::uint32_t> corners, const Eigen::Vector3d& n
 
 MeshBuilder::MeshBuilder(const CityFileSettings& settings, std::string_view name, std::string_view usual_axes)
     : name_(name),
+      settings_(settings),
+      of_a_map_(!settings.file_crs.empty() && settings.file_crs != "local"),
       most_triangles_(std::min<std::size_t>(settings.most_triangles, std::numeric_limits<std::uint32_t>::max() / 3)),
       most_vertices_(std::max<std::size_t>(1000, 3 * most_triangles_)),
       to_city_(Eigen::Affine3d::Identity()),
@@ -55,7 +57,7 @@ MeshBuilder::MeshBuilder(const CityFileSettings& settings, std::string_view name
         turn(i, axes.axis[which]) = axes.sign[which] * settings.metres_per_unit;
     }
     to_city_.linear() = turn;
-    to_city_.translate(-settings.file_origin);
+    if (!of_a_map_) to_city_.translate(-settings.file_origin);
     placement_ = to_city_;
     model_.origin = settings.origin.value_or(Geodetic{});
     model_.materials = {settings.material};
@@ -233,7 +235,33 @@ Result<CityFile> MeshBuilder::finish(std::string format) {
     file.dropped = not_finite_ + without_area_ + shapes_;
     file.warnings = std::move(warnings_);
     file.model = std::move(model_);
+    if (of_a_map_)
+        if (auto laid = lay_on_map(file); !laid) return fail(std::move(laid.error()));
     return file;
+}
+
+// From the coordinates of the map to the frame; what is lowest is the ground.
+Result<void> MeshBuilder::lay_on_map(CityFile& file) {
+    const ReferenceSystem system = reference_system_of_file("", settings_).value_or(ReferenceSystem{});
+    PlaceOnEarth::Extent extent;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& vertex : file.model.vertices) {
+        extent.include(vertex.head<2>());
+        lowest = std::min(lowest, vertex.z());
+    }
+    CityFileSettings in_metres = settings_;
+    in_metres.metres_per_unit = 1;  // has been applied
+    const auto place = PlaceOnEarth::make(system, extent, lowest, in_metres);
+    if (!place) return fail(place.error().code, fmt::format("{}: {}: {}", name_, system.name, place.error().message));
+    for (Eigen::Vector3d& vertex : file.model.vertices)
+        vertex = (*place)(vertex);
+    file.model.origin = place->origin();
+    file.anchor = place->anchor();
+    for (const std::string& doubt : place->doubts(settings_, true))
+        file.warnings.push_back(fmt::format("{}: {}", name_, doubt));
+    if (settings_.file_origin != Eigen::Vector3d::Zero())
+        file.warnings.push_back(fmt::format("{}: file_origin means nothing beside file_crs", name_));
+    return {};
 }
 
 }  // namespace skyloop

@@ -217,7 +217,7 @@ void OsmReader::add_area(const Area& area) {
 }
 
 Outlines OsmReader::outlines() {
-    found_.system = {CoordinateKind::geographic, false, "EPSG:4326", 4326};
+    found_.system = wgs84_degrees("EPSG:4326");
     drop_repeating_borders();
     for (const auto& [id, way] : ways_) {
         if (!way.use) continue;

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "detail/city_objects.hpp"
+#include "detail/city_text.hpp"
 #include "detail/ear_clipper.hpp"
 #include "world/scene/ring_pieces.hpp"
 
@@ -255,13 +256,13 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
                                                     name, read.dropped));
     const auto place = PlaceOnEarth::make(read.system, extent, std::nullopt, settings);
     if (!place)
-        return fail(place.error().code, fmt::format("{}: {}: {}", name, read.system.name, place.error().message));
+        return fail(place.error().code,
+                    fmt::format("{}: {}: {}", name, shown(read.system.name), place.error().message));
     file.model.origin = place->origin();
     file.anchor = place->anchor();
-    // Outlines have no heights that could count from elsewhere.
-    if (!place->on_earth())
-        if (std::string doubt = place->doubt_of_map(settings); !doubt.empty())
-            file.warnings.push_back(std::move(doubt));
+    constexpr bool has_heights = false;
+    for (std::string& doubt : place->doubts(settings, has_heights))
+        file.warnings.push_back(std::move(doubt));
     for (std::string& warning : PlaceOnEarth::unused_settings(read.system, settings))
         file.warnings.push_back(std::move(warning));
     std::vector<double> grounds;

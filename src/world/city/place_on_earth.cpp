@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "base/geo/geodesic.hpp"
+#include "detail/city_text.hpp"
 
 namespace skyloop {
 
@@ -14,14 +19,11 @@ constexpr double most_degrees = 5;
 /// Degrees that no file in metres is as narrow as.
 constexpr double least_metres = 0.5;
 
-bool counts_from_the_sea(const ReferenceSystem& system, const CityFileSettings& settings) {
-    if (settings.heights != CityHeights::as_told) return settings.heights == CityHeights::sea_level;
-    return system.sea_level;
-}
+/// From the run, m, at which no model says anything to it.
+constexpr double farthest_from_run = 100'000;
 
-bool lies_on_earth(const ReferenceSystem& system) {
-    return system.kind == CoordinateKind::geographic ||
-           (system.kind == CoordinateKind::projected && system.code && MapProjection::of_epsg(*system.code));
+Metres distance(const Geodetic& from, const Eigen::Vector2d& degrees) {
+    return geodesic_between(from, Geodetic::degrees(degrees.y(), std::remainder(degrees.x(), 360), 0)).length;
 }
 
 }  // namespace
@@ -51,23 +53,28 @@ std::vector<std::string> PlaceOnEarth::unused_settings(const ReferenceSystem& sy
     std::vector<std::string> warnings;
     if (settings.axes) warnings.emplace_back("axes mean nothing for this format, east and north are told by it");
     if (settings.file_origin != Eigen::Vector3d::Zero()) warnings.emplace_back(file_origin_unused);
-    if (settings.metres_per_unit != 1 && lies_on_earth(system))
+    if (settings.metres_per_unit != 1 && system.lies_on_earth())
         warnings.emplace_back("the length of a unit means nothing for places on the Earth and heights in metres");
     return warnings;
 }
 
-std::string PlaceOnEarth::doubt_of_heights(const ReferenceSystem& system, const CityFileSettings& settings) {
-    if (settings.geoid || !lies_on_earth(system) || !counts_from_the_sea(system, settings)) return "";
-    return fmt::format(
-        "heights ({}) count from the sea, and the geoid's grid is not there: they are taken as above the "
-        "ellipsoid",
-        system.name);
+bool PlaceOnEarth::stands_exchanged(const ReferenceSystem& system, const Eigen::Vector2d& middle,
+                                    const CityFileSettings& settings) {
+    const EarthMap& map = *system.map;
+    const auto near_run = [&](const Eigen::Vector2d& place) {
+        const Eigen::Vector2d degrees = map.on_earth(place);
+        return settings.origin && map.fit(place) != EarthMap::Fit::none &&
+               distance(*settings.origin, degrees).value() <= farthest_from_run;
+    };
+    const Eigen::Vector2d other(middle.y(), middle.x());
+    const EarthMap::Fit fits = map.fit(middle), other_fits = map.fit(other);
+    if (const bool near = near_run(middle); near || near_run(other)) return !near;
+    return other_fits > fits;
 }
 
 Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Extent& extent,
                                         std::optional<double> ground, const CityFileSettings& settings) {
     PlaceOnEarth place;
-    place.count_heights(system, settings);
     if (system.kind == CoordinateKind::geographic) {
         if (!extent.on_globe())
             return fail(ErrorCode::input,
@@ -80,31 +87,46 @@ Result<PlaceOnEarth> PlaceOnEarth::make(const ReferenceSystem& system, const Ext
                                     "{:.6g} and {:.6g} … {:.6g}",
                                     most_degrees, extent.lowest.x(), extent.highest.x(), extent.lowest.y(),
                                     extent.highest.y()));
-        const Eigen::Vector2d middle = extent.middle();
+        place.settle_map(system, extent.middle(), settings);
         place.heights_known_ = true;
-        place.set_origin(middle.y(), middle.x(), ground, settings);
-        return place;
+        place.set_origin(extent.middle(), ground, settings);
+    } else {
+        place.origin_ = settings.origin.value_or(Geodetic{});
+        place.metres_per_unit_ = settings.metres_per_unit;
+        if (system.kind == CoordinateKind::projected)
+            if (const auto laid = place.lay_map(system, extent, ground, settings); !laid) return fail(laid.error());
     }
-    place.origin_ = settings.origin.value_or(Geodetic{});
-    place.metres_per_unit_ = settings.metres_per_unit;
-    if (system.kind == CoordinateKind::projected)
-        if (const auto laid = place.lay_map(system, extent, ground, settings); !laid) return fail(laid.error());
+    if (const auto near = place.lies_near(extent, settings); !near) return fail(near.error());
     return place;
 }
 
-void PlaceOnEarth::count_heights(const ReferenceSystem& system, const CityFileSettings& settings) {
-    sea_level_ = counts_from_the_sea(system, settings);
-    heights_known_ = sea_level_ || settings.heights != CityHeights::as_told;
+void PlaceOnEarth::settle_map(const ReferenceSystem& system, const Eigen::Vector2d& middle,
+                              const CityFileSettings& settings) {
+    system_ = system.name;
+    map_ = system.map;
+    if (map_) doubt_of_places_ = system.map->settle(middle);
+    const bool told = settings.heights == CityHeights::as_told && system.has_sea_heights();
+    by_map_ = told && map_->knows_heights;
+    sea_level_ = settings.heights == CityHeights::sea_level || (told && !by_map_);
+    heights_known_ = told || settings.heights != CityHeights::as_told;
 }
 
-void PlaceOnEarth::set_origin(double latitude_deg, double longitude_deg, std::optional<double> ground,
+Eigen::Vector2d PlaceOnEarth::degrees_of(const Eigen::Vector2d& place) const {
+    return map_ ? map_->on_earth(place) : place;
+}
+
+void PlaceOnEarth::set_origin(const Eigen::Vector2d& middle, std::optional<double> ground,
                               const CityFileSettings& settings) {
     const double level = ground.value_or(0);
-    origin_ = settings.origin.value_or(Geodetic::degrees(latitude_deg, std::remainder(longitude_deg, 360), level));
-    const double geoid =
-        sea_level_ && settings.geoid ? settings.geoid->undulation(origin_.latitude, origin_.longitude).value() : 0;
-    if (!settings.origin) origin_.height.above_ellipsoid += Metres(geoid);
-    raise_ = heights_known_ ? geoid : origin_.height.above_ellipsoid.value() - level;
+    const Eigen::Vector2d degrees = degrees_of(middle);
+    origin_ = settings.origin.value_or(Geodetic::degrees(degrees.y(), std::remainder(degrees.x(), 360), level));
+    double raise = 0;
+    if (by_map_)
+        raise = map_->ellipsoidal_height({middle.x(), middle.y(), level}) - level;
+    else if (sea_level_ && settings.geoid)
+        raise = settings.geoid->undulation(origin_.latitude, origin_.longitude).value();
+    if (!settings.origin) origin_.height.above_ellipsoid += Metres(raise);
+    raise_ = heights_known_ ? raise : origin_.height.above_ellipsoid.value() - level;
     ground_ = origin_.height.above_ellipsoid.value() - raise_;
     frame_.emplace(origin_);
 }
@@ -120,45 +142,93 @@ Result<void> PlaceOnEarth::lay_map(const ReferenceSystem& system, const Extent& 
         if (!anchor_->level) anchor_->level = ground;
     }
     ground_ = anchor_->level.value_or(0);
-    const auto known = reference_system(anchor_->system);
-    if (known && known->code) projection_ = MapProjection::of_epsg(*known->code);
-    if (!projection_) return {};
-    if (!projection_->reaches({middle.x(), middle.y()}))
+    ReferenceSystem known = system;
+    if (!known.map && anchor_->named && anchor_->system != system.name)
+        known = reference_system(anchor_->system).value_or(system);
+    if (!known.map || known.kind != CoordinateKind::projected) {
+        const Error why = known.unknown.value_or(Error{ErrorCode::input, "names no reference system"});
+        const bool guessed = settings.origin && settings.origin_is_guess && !before && settings.file_crs != "local";
+        if (guessed || why.code == ErrorCode::outside)
+            return fail(why.code,
+                        fmt::format("{}; set scene.file_crs to the file's reference system, or scene.origin to "
+                                    "where the middle of the file lies",
+                                    why.message));
+        if (known.unknown) why_unknown_ = fmt::format(", which {}", why.message);
+        return {};
+    }
+    const std::array places{middle, extent.lowest, extent.highest};
+    if (std::any_of(places.begin(), places.end(),
+                    [&](const auto& place) { return known.map->fit(place) == EarthMap::Fit::none; }))
         return fail(ErrorCode::input,
-                    fmt::format("no place of this map lies {:.0f} m east and {:.0f} m north, where the "
-                                "middle of the file is; are its coordinates of another?",
+                    fmt::format("no place of this map lies {:.0f} m east and {:.0f} m north, where the middle of the "
+                                "file is; set scene.file_crs to the system of its coordinates, or to \"local\"",
                                 middle.x(), middle.y()));
-    count_heights(*known, settings);
+    settle_map(known, middle, settings);
     metres_per_unit_ = 1;
-    const EarthPlace place = projection_->on_earth({middle.x(), middle.y()});
-    set_origin(place.latitude.deg(), place.longitude.deg(), ground_, settings);
+    set_origin(middle, ground_, settings);
     return {};
 }
 
+Result<void> PlaceOnEarth::lies_near(const Extent& extent, const CityFileSettings& settings) const {
+    if (!frame_ || !settings.origin) return {};
+    const Geodetic& run = *settings.origin;
+    const Eigen::Vector2d middle = degrees_of(extent.middle()), corner = degrees_of(extent.lowest);
+    const Geodetic there = Geodetic::degrees(middle.y(), std::remainder(middle.x(), 360), 0);
+    const double away = distance(run, middle).value() - distance(there, corner).value();
+    if (away <= farthest_from_run) return {};
+    return fail(
+        ErrorCode::input,
+        fmt::format("lies at {:.4f}, {:.4f} (latitude, longitude), {:.0f} km from the {} at {:.4f}, {:.4f}; set "
+                    "scene.file_crs to the file's reference system, or scene.origin and the trajectory to its "
+                    "place",
+                    middle.y(), std::remainder(middle.x(), 360), away / 1000,
+                    settings.origin_is_guess ? "start of the run" : "origin", run.latitude.deg(), run.longitude.deg()));
+}
+
 std::string PlaceOnEarth::doubt_of_map(const CityFileSettings& settings) const {
-    if (!anchor_ || (projection_ && heights_known_)) return "";
-    if (projection_)
+    if (!anchor_ || (frame_ && heights_known_)) return "";
+    if (frame_)
         return settings.origin
                    ? fmt::format(
                          "heights ({}) count from the ground, which is at {:.3f} of the file and taken to be at "
                          "the height of the origin",
-                         anchor_->system, ground_)
+                         shown(anchor_->system), ground_)
                    : "";
     const std::string_view origin =
         settings.origin ? settings.origin_is_guess ? ", which is a guess," : " as given" : "";
     const bool told = settings.origin && !settings.origin_is_guess;
     const bool beside = settings.anchor && settings.anchor->system == anchor_->system;
-    return fmt::format("coordinates are projected ({}): the frame's origin{} is at {:.3f}, {:.3f}, {:.3f} of the {}{}",
-                       anchor_->system, origin, anchor_->east, anchor_->north, ground_,
-                       beside ? "map, as for the file before" : "file",
-                       told ? "" : "; its place on Earth is not known: give an origin");
+    return fmt::format(
+        "coordinates are projected ({}{}): the frame's origin{} is at {:.3f}, {:.3f}, {:.3f} of the {}{}",
+        shown(anchor_->system), why_unknown_, origin, anchor_->east, anchor_->north, ground_,
+        beside ? "map, as for the file before" : "file",
+        told ? "" : "; its place on Earth is not known: give an origin");
+}
+
+std::vector<std::string> PlaceOnEarth::doubts(const CityFileSettings& settings, bool has_heights) const {
+    std::vector<std::string> lines;
+    if (!doubt_of_places_.empty()) lines.push_back(fmt::format("{} ({})", doubt_of_places_, shown(system_)));
+    if (std::string doubt = doubt_of_map(settings); !doubt.empty() && (has_heights || !frame_))
+        lines.push_back(std::move(doubt));
+    if (!has_heights || !frame_ || !sea_level_) return lines;
+    const bool by_name = settings.heights == CityHeights::as_told;
+    const std::string what = by_name ? fmt::format("{} of {}", map_->vertical_system, shown(system_)) : system_;
+    if (!settings.geoid)
+        lines.push_back(fmt::format(
+            "heights ({}) count from the sea, and the geoid's grid is not there: they are taken as above the ellipsoid",
+            what));
+    else if (by_name)
+        lines.push_back(fmt::format("heights ({}) are taken as above mean sea level, the geoid EGM96: {}", what,
+                                    map_->why_no_heights));
+    return lines;
 }
 
 Eigen::Vector3d PlaceOnEarth::operator()(const Eigen::Vector3d& place) const {
     if (frame_) {
-        const EarthPlace on_earth = projection_ ? projection_->on_earth({place.x(), place.y()})
-                                                : EarthPlace{Angle::degrees(place.y()), Angle::degrees(place.x())};
-        return frame_->to_enu(to_ecef({on_earth.latitude, on_earth.longitude, {Metres(place.z() + raise_)}})).vector();
+        const Eigen::Vector2d degrees = degrees_of(place.head<2>());
+        double height = by_map_ ? map_->ellipsoidal_height(place) : place.z() + raise_;
+        if (!std::isfinite(height)) height = place.z() + raise_;  // beyond the grid
+        return frame_->to_enu(to_ecef(Geodetic::degrees(degrees.y(), degrees.x(), height))).vector();
     }
     const Eigen::Vector2d middle = anchor_ ? Eigen::Vector2d(anchor_->east, anchor_->north) : Eigen::Vector2d::Zero();
     const Eigen::Vector2d flat = (place.head<2>() - middle) * metres_per_unit_;

@@ -19,7 +19,7 @@ Result<CityFile> read_cityjson(std::string_view text, const CityFileSettings& se
 }
 
 /// A cube of 10 m with its lower corner at 1000, 2000, 5.
-std::string cube_file(std::string_view objects, std::string_view system = "EPSG:7415") {
+std::string cube_file(std::string_view objects, std::string_view system = "of our own") {
     return fmt::format(
         R"({{"type":"CityJSON","version":"2.0","metadata":{{"referenceSystem":"https://www.opengis.net/def/crs/{}"}},
         "transform":{{"scale":[0.01,0.01,0.01],"translate":[1000,2000,5]}},"CityObjects":{{{}}},
@@ -184,11 +184,11 @@ TEST(CityJson, KnowsDegreesByTheirSystemOrTheirNumbers) {
         EXPECT_NEAR(file->model.origin.latitude.deg(), 50.00005, 1e-9) << system;
         EXPECT_NEAR(file->model.origin.longitude.deg(), 10, 1e-9) << system;
     }
-    const auto unknown = read_as(R"("referenceSystem":"EPSG:4314")", true);
+    const auto unknown = read_as(R"("referenceSystem":"EPSG:99999")", true);
     ASSERT_TRUE(unknown) << unknown.error().message;
     EXPECT_NEAR(unknown->model.origin.latitude.deg(), 50.00005, 1e-9);
     EXPECT_THAT(unknown->warnings,
-                ::testing::Contains(HasSubstr("(EPSG:4314) are taken as degrees of WGS-84, latitude")));
+                ::testing::Contains(HasSubstr("(EPSG:99999) are taken as degrees of WGS-84, latitude")));
     const auto unnamed = read_as("", false);
     ASSERT_TRUE(unnamed) << unnamed.error().message;
     EXPECT_NEAR(unnamed->model.origin.latitude.deg(), 50.00005, 1e-9);
@@ -234,7 +234,7 @@ TEST(CityJson, DropsWrongCornersAndSaysSo) {
 // A line each: what all share, and two buildings with corners of their own.
 TEST(CityJson, ReadsTextSequences) {
     const std::string head =
-        R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[1000,2000,5]},)"
+        R"({"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[691000,5334000,5]},)"
         R"("metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/25832"},"CityObjects":{},"vertices":[]})"
         "\n";
     const auto feature = [](int east) {
@@ -278,16 +278,18 @@ TEST(CityJson, ReadsDelft) {
     const auto text = read_text_file(path);
     ASSERT_TRUE(text);
     CityFileSettings settings;
-    settings.origin = Geodetic::degrees(52.01, 4.36, 45);
     const auto file = parse_cityjson(*text, "delft.json", settings);
     ASSERT_TRUE(file) << file.error().message;
     EXPECT_EQ(file->buildings, 160u);
     EXPECT_GT(count_of(file->model, SurfaceKind::ground), 1000u);
     EXPECT_GE(file->model.foliage.size(), 10u);
-    // The extent that the file states is 524.4 m by 327.8 m, up to 16.8 m.
+    // Where the middle of the extent that the file states lies: echo 84878.653 447586.818 | cs2cs EPSG:28992 EPSG:4326.
+    EXPECT_NEAR(file->model.origin.latitude.deg(), 52.012207498, 1e-5);
+    EXPECT_NEAR(file->model.origin.longitude.deg(), 4.365796156, 1e-5);
+    // It is 524.4 m by 327.8 m, up to 16.8 m, and the map's north is 0.8° west of true north.
     for (const Eigen::Vector3d& vertex : file->model.vertices) {
-        EXPECT_LE(std::abs(vertex.x()), 262.3);
-        EXPECT_LE(std::abs(vertex.y()), 164);
+        EXPECT_LE(std::abs(vertex.x()), 262.3 + 2.4);
+        EXPECT_LE(std::abs(vertex.y()), 164 + 3.7);
         EXPECT_LE(std::abs(vertex.z() - 8), 9);
     }
 }

@@ -12,6 +12,7 @@ namespace {
 
 using test::emulator_data;
 using test::emulator_scenario;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
@@ -119,6 +120,38 @@ TEST(SceneAssembly, MissingAndDamagedFilesAreNamed) {
     ASSERT_FALSE(damaged);
     EXPECT_EQ(damaged.error().code, ErrorCode::input);
     EXPECT_THAT(damaged.error().message, HasSubstr("bad.obj"));
+}
+
+/// A roof of 20 m about a place of a reference system, as CityGML.
+std::string roof_of(std::string_view system, double east, double north) {
+    return fmt::format(
+        "<CityModel><Envelope srsName='{0}'/><Building><lod2MultiSurface><Polygon><exterior><LinearRing><posList>"
+        "{1} {3} 5 {2} {3} 5 {2} {4} 5 {1} {4} 5 {1} {3} 5</posList></LinearRing></exterior></Polygon>"
+        "</lod2MultiSurface></Building></CityModel>",
+        system, east - 10, east + 10, north - 10, north + 10);
+}
+
+TEST(SceneAssembly, ACityOfAnotherPlaceOrOfNoneIsRefused) {
+    const test::TemporaryFolder folder;
+    const auto refused = [&](std::string_view system, double east, double north, const std::string& keys = "") {
+        std::ofstream(folder / "town.gml") << roof_of(system, east, north);
+        const auto assembly = with_scene(
+            fmt::format("[scene]\nbuildings = \"{}\"\n{}[trajectory]\nkind = \"fixed\"\nat = [52.01, 4.36, 50]\n",
+                        (folder / "town.gml").string(), keys));
+        return assembly ? std::string() : assembly.error().message;
+    };
+    EXPECT_EQ(refused("EPSG:28992", 84878, 447586), "") << "at the start of the run";
+    EXPECT_THAT(refused("EPSG:25832", 691603, 5334780),
+                AllOf(HasSubstr("town.gml: EPSG:25832: lies at 48.1374, 11.5755"),
+                      HasSubstr("from the start of the run"), HasSubstr("set scene.file_crs")));
+    EXPECT_THAT(refused("EPSG:99999", 84878, 447586),
+                AllOf(HasSubstr("town.gml: EPSG:99999: is no reference system"), HasSubstr("set scene.file_crs"),
+                      HasSubstr("scene.origin")));
+    EXPECT_THAT(refused("", 84878, 447586),
+                HasSubstr("town.gml: unnamed: names no reference system; set scene.file_crs"));
+    EXPECT_EQ(refused("EPSG:99999", 84878, 447586, "file_crs = \"EPSG:28992\"\n"), "");
+    EXPECT_EQ(refused("EPSG:99999", 84878, 447586, "origin = [52.01, 4.36, 45]\n"), "");
+    EXPECT_EQ(refused("", 84878, 447586, "file_crs = \"local\"\n"), "");
 }
 
 TEST(SceneAssembly, AnAntennaFarBelowOrAboveTheSceneIsAWarning) {

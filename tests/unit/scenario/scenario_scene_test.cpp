@@ -9,6 +9,7 @@ namespace {
 
 using test::mistakes_of;
 using test::scenario_of;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -30,6 +31,7 @@ TEST(ScenarioScene, EveryKeyLandsInItsField) {
     EXPECT_NEAR(scene.reading.origin->latitude.deg(), 48.5, 1e-12);
     EXPECT_EQ(scene.reading.origin->height.above_ellipsoid, Metres(520));
     EXPECT_EQ(scene.reading.file_origin, Eigen::Vector3d(100, -2.5, 3e6));
+    EXPECT_EQ(scene.reading.file_crs, "EPSG:25832+7837");
     ASSERT_TRUE(scene.reading.axes);
     EXPECT_THAT(scene.reading.axes->axis, ElementsAre(1, 0, 2));
     EXPECT_EQ(scene.reading.heights, CityHeights::sea_level);
@@ -61,6 +63,11 @@ TEST(ScenarioScene, MistakesAreToldWithTheirPlace) {
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\naxes = \"x,y\""),
                 StartsWith("test.toml:3:8: scene.axes: "));
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\naxes = \"\""), StartsWith("test.toml:3:8: scene.axes: "));
+    EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\nfile_crs = \"EPSG:99999\""),
+                AllOf(StartsWith("test.toml:3:12: scene.file_crs: 'EPSG:99999' is no reference system that PROJ "),
+                      HasSubstr("; expected one such as EPSG:25832")));
+    EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\nfile_crs = \"EPSG:4978\""),
+                HasSubstr("scene.file_crs: 'EPSG:4978' is of another kind"));
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\nmaterial = \"bricks\""), HasSubstr("did you mean 'brick'"));
     EXPECT_THAT(mistakes_of("[scene]\nbuildings = \"demo\"\nreflections = 17"),
                 HasSubstr("scene.reflections: is 17; expected a whole number from 1 to 16"));

@@ -145,6 +145,7 @@ buildings = ["a.obj", "demo"]
 terrain = "hills.asc"
 origin = [48.5, 11.5, 520]
 file_origin = [100, -2.5, 3e6]
+file_crs = "EPSG:25832+7837"
 axes = "y,x,z"
 heights = "sea_level"
 unit_m = 0.01

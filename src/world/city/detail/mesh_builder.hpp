@@ -26,6 +26,7 @@ struct MeshPart {
 /// city's box and something stands 2 m above them.
 class MeshBuilder {
 public:
+    /// @param settings outlive the builder
     /// @param usual_axes of the format, where the settings say nothing
     MeshBuilder(const CityFileSettings& settings, std::string_view name, std::string_view usual_axes);
 
@@ -63,8 +64,11 @@ private:
     void drop_unused_vertices();
     void find_ground();
     void tell_dropped();
+    Result<void> lay_on_map(CityFile& file);
 
     std::string name_;
+    const CityFileSettings& settings_;
+    bool of_a_map_;  ///< by file_crs
     std::size_t most_triangles_, most_vertices_;
     Eigen::Affine3d to_city_, placement_;
     CityModel model_;

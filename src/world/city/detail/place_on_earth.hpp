@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/geo/local_frame.hpp"
-#include "base/geo/map_projection.hpp"
 #include "reference_system.hpp"
 #include "world/city/city_file.hpp"
 
@@ -32,11 +31,12 @@ inline constexpr const char* file_origin_unused =
 
 /// Takes coordinates of a file to metres east, north and up.
 ///
-/// Geographic places lie in the tangent frame at `settings.origin`, else at the middle of the extent and the `ground`
-/// level (0 m where it is absent). Heights above the sea are raised by the geoid's at the origin. So do places of a
-/// projection that geo/map_projection knows; where neither it nor `settings.heights` tells what heights count from, the
-/// `ground` level lies at the height of the origin. Of another projection the middle of the extent lies there, or what
-/// `settings.anchor` says: the convergence of the map's north and its scale are neglected.
+/// Geographic places and those of a map that PROJ knows lie in the tangent frame at `settings.origin`, else at the
+/// middle of the extent and the `ground` level (0 m where it is absent). Heights of a vertical system are PROJ's where
+/// it has the grid, else they count from the sea and are raised by the geoid's height at the origin. Where neither the
+/// system nor `settings.heights` tells what a map's heights count from, the `ground` level lies at the height of the
+/// origin. Of an unknown map the middle of the extent lies at the origin, or what `settings.anchor` says: the
+/// convergence of the map's north and its scale are neglected.
 class PlaceOnEarth {
 public:
     /// The box around what a file holds.
@@ -54,13 +54,17 @@ public:
         [[nodiscard]] bool is_of_degrees() const;
     };
 
-    /// Fails with `input` when geographic coordinates are no degrees, and those of a map lie beyond it.
+    /// Fails with `input` when geographic coordinates are no degrees, when those of a map lie beyond it or, of an
+    /// unknown one, at a guess, and when the file lies more than 100 km from `settings.origin`; with `outside` without
+    /// PROJ's database.
     static Result<PlaceOnEarth> make(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
                                      const CityFileSettings& settings);
     /// What of the settings means nothing for a file, as warnings.
     static std::vector<std::string> unused_settings(const ReferenceSystem& system, const CityFileSettings& settings);
-    /// Of a geoid that would be needed and is not there; else nothing.
-    static std::string doubt_of_heights(const ReferenceSystem& system, const CityFileSettings& settings);
+    /// Whether the coordinates of a map stand in the other order than the system's `north_first` says, by where both
+    /// orders would put the middle: near the run, in the map's area of use, or nearly there.
+    static bool stands_exchanged(const ReferenceSystem& system, const Eigen::Vector2d& middle,
+                                 const CityFileSettings& settings);
 
     [[nodiscard]] Eigen::Vector3d operator()(const Eigen::Vector3d& place) const;
     /// The place at the origin's level.
@@ -72,13 +76,15 @@ public:
     [[nodiscard]] bool on_earth() const { return frame_.has_value(); }
     /// Of places of a map, for the files that come after.
     [[nodiscard]] const std::optional<MapAnchor>& anchor() const { return anchor_; }
-    /// How a map lies on the Earth as far as that is not told by the file; nothing where it is.
-    [[nodiscard]] std::string doubt_of_map(const CityFileSettings& settings) const;
+    /// What of the place is not told by the file, or not as exactly: of the map, and of heights where there are any.
+    [[nodiscard]] std::vector<std::string> doubts(const CityFileSettings& settings, bool has_heights) const;
 
 private:
-    void count_heights(const ReferenceSystem& system, const CityFileSettings& settings);
-    void set_origin(double latitude_deg, double longitude_deg, std::optional<double> ground,
-                    const CityFileSettings& settings);
+    void settle_map(const ReferenceSystem& system, const Eigen::Vector2d& middle, const CityFileSettings& settings);
+    [[nodiscard]] std::string doubt_of_map(const CityFileSettings& settings) const;
+    [[nodiscard]] Eigen::Vector2d degrees_of(const Eigen::Vector2d& place) const;
+    [[nodiscard]] Result<void> lies_near(const Extent& extent, const CityFileSettings& settings) const;
+    void set_origin(const Eigen::Vector2d& middle, std::optional<double> ground, const CityFileSettings& settings);
     Result<void> lay_map(const ReferenceSystem& system, const Extent& extent, std::optional<double> ground,
                          const CityFileSettings& settings);
 
@@ -87,9 +93,11 @@ private:
     double raise_ = 0;            ///< from the file's heights to those above the ellipsoid
     bool sea_level_ = false;      ///< heights count from there
     bool heights_known_ = false;  ///< and are not fitted to the level of the origin
+    bool by_map_ = false;         ///< and PROJ has a grid of them
     double metres_per_unit_ = 1;
     std::optional<MapAnchor> anchor_;
-    std::optional<MapProjection> projection_;
+    std::shared_ptr<const EarthMap> map_;
+    std::string system_, doubt_of_places_, why_unknown_;
     std::optional<LocalFrame> frame_;
 };
 
