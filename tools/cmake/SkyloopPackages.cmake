@@ -26,6 +26,7 @@ skyloop_require(EXPAT libexpat1-dev)
 skyloop_require(Threads libc6-dev)
 skyloop_require(SQLite3 libsqlite3-dev)
 skyloop_require(PROJ libproj-dev CONFIG)
+skyloop_require(TIFF libtiff-dev)
 skyloop_require(Boost libboost-dev CONFIG)
 if(SKYLOOP_TESTS OR SKYLOOP_FUZZ)
     skyloop_require(GTest libgtest-dev CONFIG)
@@ -77,6 +78,17 @@ endif()
 add_library(osmium::osmium INTERFACE IMPORTED GLOBAL)
 target_include_directories(osmium::osmium INTERFACE ${SKYLOOP_OSMIUM_INCLUDE} ${SKYLOOP_PROTOZERO_INCLUDE})
 target_link_libraries(osmium::osmium INTERFACE EXPAT::EXPAT ZLIB::ZLIB Threads::Threads)
+
+# libgeotiff has no package configuration in Debian.
+find_path(SKYLOOP_GEOTIFF_INCLUDE geotiff.h PATH_SUFFIXES geotiff libgeotiff)
+find_library(SKYLOOP_GEOTIFF_LIBRARY geotiff)
+mark_as_advanced(SKYLOOP_GEOTIFF_INCLUDE SKYLOOP_GEOTIFF_LIBRARY)
+if(NOT SKYLOOP_GEOTIFF_INCLUDE OR NOT SKYLOOP_GEOTIFF_LIBRARY)
+    message(FATAL_ERROR "skyloop needs libgeotiff: apt-get install libgeotiff-dev  (or run tools/start, which does)")
+endif()
+add_library(geotiff::geotiff UNKNOWN IMPORTED GLOBAL)
+set_target_properties(geotiff::geotiff PROPERTIES IMPORTED_LOCATION ${SKYLOOP_GEOTIFF_LIBRARY}
+                      INTERFACE_INCLUDE_DIRECTORIES ${SKYLOOP_GEOTIFF_INCLUDE} INTERFACE_LINK_LIBRARIES TIFF::TIFF)
 
 # libusb, and the one header of hidapi, whose two libraries are loaded by name when a HID device is first asked for.
 find_path(SKYLOOP_LIBUSB_INCLUDE libusb-1.0/libusb.h)

@@ -49,7 +49,7 @@ struct CityFileSettings {
     bool origin_is_guess = false;     ///< for what warnings say
     std::optional<MapAnchor> anchor;  ///< of a file of the same scene that was read before, beside which this one lies
     /// In place of the reference system that a file names or leaves out: whatever PROJ reads, such as
-    /// "EPSG:25832+7837", or "local": metres of no map. Empty: as told.
+    /// "EPSG:25832+7837", or "local": metres of no map. A GeoTIFF's own goes first. Empty: as told.
     std::string file_crs;
     CityHeights heights = CityHeights::as_told;
     const Geoid* geoid = nullptr;  ///< without one heights above the sea are taken as they stand
@@ -86,9 +86,9 @@ struct CityFile {
 
 /// Reads a city by the ending of its name: .obj .ply .gltf .glb .geojson .json (CityJSON, CityJSONSeq or
 /// GeoJSON) .jsonl (CityJSONSeq) .osm .pbf .gml (CityGML) .xml (Mitsuba scene, with the .ply it names; CityGML;
-/// OpenStreetMap) .asc (height grid), each also compressed (.gz .Z .bz2 .xz .zst), or with what it names in a zip or
-/// tar archive; a folder with one Mitsuba scene. Files that a scene or a .gltf names are read from its own folder
-/// alone. What doubts_about() says is among the warnings.
+/// OpenStreetMap) .asc .tif .tiff (height grids), each also compressed (.gz .Z .bz2 .xz .zst), or with what it names in
+/// a zip or tar archive; a folder with one Mitsuba scene. Files that a scene or a .gltf names are read from its own
+/// folder alone. What doubts_about() says is among the warnings.
 ///
 /// Fails with `outside` when it cannot be opened, with `input` and FILE:LINE or the place when it is damaged, cut or
 /// empty.
@@ -122,6 +122,11 @@ Result<CityFile> parse_city_archive(std::string_view bytes, std::string_view nam
 /// than 100 km from 0, 0 are places of a map, that of `anchor` where there is one; else both are metres from the
 /// frame's origin. `metres_per_unit` and `origin` apply; `metres_per_unit` to heights alone where cells are degrees.
 Result<CityFile> parse_height_grid(std::string_view text, std::string_view name, const CityFileSettings& settings);
+
+/// A GeoTIFF (OGC 19-008) as ground: the first image of one sample a pixel, whole numbers or floating ones, in strips
+/// or tiles. The place is that of its tie point and scale, or of its matrix; the reference system that of its keys or
+/// of `file_crs`; GDAL's no-data value is no height. `metres_per_unit` is that of heights.
+Result<CityFile> parse_geotiff(std::string_view bytes, std::string_view name, const CityFileSettings& settings);
 
 /// What is doubtful about a city as a whole: a few metres or a hundred kilometres wide, no more than 3 m tall or more
 /// than 1500, far from its origin, without walls, walls deep below ground. Empty for most.

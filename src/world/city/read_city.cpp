@@ -132,7 +132,7 @@ Result<CityFile> parse_osm_pbf(const CityBytes& city, const CityFileSettings& se
     return parse_osm(city.bytes, "osm.pbf", city.name, settings);
 }
 
-constexpr std::array<CityEnding, 14> city_endings{{{".obj", parse_named<parse_obj>},
+constexpr std::array<CityEnding, 16> city_endings{{{".obj", parse_named<parse_obj>},
                                                    {".ply", parse_named<parse_ply>},
                                                    {".gltf", parse_gltf_file},
                                                    {".glb", parse_gltf_file},
@@ -145,6 +145,8 @@ constexpr std::array<CityEnding, 14> city_endings{{{".obj", parse_named<parse_ob
                                                    {".gml", parse_named<parse_citygml>},
                                                    {".xml", parse_xml},
                                                    {".asc", parse_named<parse_height_grid>},
+                                                   {".tif", parse_named<parse_geotiff>},
+                                                   {".tiff", parse_named<parse_geotiff>},
                                                    {".cityjson", parse_any_cityjson}}};
 
 const CityEnding* ending_of(std::string_view path) {
