@@ -6,7 +6,7 @@ import pathlib
 import time
 import unittest
 
-from session import open_folder, skyloop
+from session import SHARED, open_folder, skyloop
 
 RUN = ["simulate", "--scene", "demo", "--start", "2026-03-01T09:00:00Z", "--duration", 10, "--out"]
 
@@ -123,6 +123,21 @@ class SceneTest(unittest.TestCase):
             self.assertIn(missing.returncode, (1, 2))
             self.assertIn("PROJ's database proj.db is missing: install the package proj-data", missing.stderr)
             self.assertEqual(missing.stderr.count("\n"), 1, missing.stderr)
+
+    def test_what_was_read_without_a_grid_is_read_anew_with_it(self):
+        city = SHARED / "city/delft.json"
+        if not city.exists():
+            self.skipTest(f"no {city}")
+        with open_folder() as folder:
+            home = {**os.environ, "HOME": folder, "XDG_CACHE_HOME": folder, "XDG_DATA_HOME": folder}
+            for _ in range(2):  # the second may come from the cache
+                first = skyloop("scene", city, env=home).stdout
+            grids = pathlib.Path(folder, "proj")
+            grids.mkdir()
+            (grids / "of_ours.tif").write_bytes(b"")
+            again = skyloop("scene", city, env=home).stdout
+            self.assertNotIn("from the cache", again)
+            self.assertEqual(first.replace(", from the cache", ""), again)
 
     def test_check_reads_the_scene(self):
         self.assertIn("scene       demo, ", skyloop("check", "--scene", "demo").stdout)

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 
 #include "detail/city_text.hpp"
@@ -136,12 +135,6 @@ private:
         T value = otherwise;
         return TIFFGetFieldDefaulted(file_.get(), tag, &value) == 1 ? value : otherwise;
     }
-    [[nodiscard]] std::span<const double> numbers(std::uint32_t tag) const {
-        std::uint16_t count = 0;
-        const double* values = nullptr;
-        if (TIFFGetField(file_.get(), tag, &count, &values) != 1 || values == nullptr) return {};
-        return {values, count};
-    }
 
     Result<void> read_layout() {
         grid_.columns = field<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
@@ -180,24 +173,18 @@ private:
         unsigned short raster_type = RasterPixelIsArea;
         if (keys) GTIFKeyGetSHORT(keys.get(), GTRasterTypeGeoKey, &raster_type, 0, 1);
         const double middle = raster_type == RasterPixelIsPoint ? 0 : 0.5;
-        const auto matrix = numbers(TIFFTAG_GEOTRANSMATRIX), tie = numbers(TIFFTAG_GEOTIEPOINTS),
-                   scale = numbers(TIFFTAG_GEOPIXELSCALE);
-        Eigen::Vector2d corner;
-        if (matrix.size() >= 8) {
-            grid_.next_column = {matrix[0], matrix[4]};
-            grid_.next_row = {matrix[1], matrix[5]};
-            corner = {matrix[3], matrix[7]};
-        } else if (tie.size() >= 6 && scale.size() >= 2) {
-            grid_.next_column = {scale[0], 0};
-            grid_.next_row = {0, -scale[1]};
-            corner = Eigen::Vector2d(tie[3], tie[4]) - tie[0] * grid_.next_column - tie[1] * grid_.next_row;
-        } else {
+        const auto model = [&](double column, double row) {
+            Eigen::Vector2d place(column, row);
+            const bool told = keys && GTIFImageToPCS(keys.get(), &place.x(), &place.y());
+            return told ? place : Eigen::Vector2d::Constant(std::nan(""));
+        };
+        grid_.first = model(middle, middle);
+        if (!grid_.first.allFinite())
             return refused("tells no place; expected a GeoTIFF with a tie point and a pixel scale, or a matrix");
-        }
-        grid_.first = corner + middle * (grid_.next_column + grid_.next_row);
+        grid_.next_column = model(middle + 1, middle) - grid_.first;
+        grid_.next_row = model(middle, middle + 1) - grid_.first;
         const double area = grid_.next_column.x() * grid_.next_row.y() - grid_.next_column.y() * grid_.next_row.x();
-        if (!grid_.first.allFinite() || !std::isfinite(area) || area == 0)
-            return refused("its pixels have no size, or lie nowhere");
+        if (!std::isfinite(area) || area == 0) return refused("its pixels have no size, or lie nowhere");
         if (keys) grid_.system = reference_system(system_name(*keys));
         if (!settings_.file_crs.empty() && (!grid_.system || grid_.system->unknown))
             grid_.system = reference_system_of_file("", settings_);
