@@ -125,7 +125,7 @@ void warn_of_scene(const UrbanScene& scene, const std::optional<Geodetic>& start
     if (const double distance = distance_to_scene(*start, scene); distance > far_m)
         warnings.push_back(fmt::format(
             "scene: the antenna starts {:.1f} km away from the scene, whose origin is {:.6f}, {:.6f}; is it the right "
-            "place?",
+            "place? scene.origin sets that of the scene, the trajectory that of the antenna",
             distance / 1000, scene.frame().origin().latitude.deg(), scene.frame().origin().longitude.deg()));
 }
 
