@@ -303,6 +303,14 @@ TEST(CityGml, DropsWrongPolygonsAndSaysSo) {
     EXPECT_THAT(file->warnings, ::testing::Contains(HasSubstr("4 surfaces")));
 }
 
+// Amersfoort by RDNAPTRANS2018 of the Dutch Kadaster: 155000, 463000, 0 is 52.155172897° N 5.387203657° E, 43.2551 m.
+TEST_F(CityHeightsTest, AgreeWithTheDutchTransformationToAMetre) {
+    const auto file = read_citygml(gml_file(square_roof(154950, 462950, 0), "EPSG:7415"), settings_);
+    ASSERT_TRUE(file) << file.error().message;
+    const Position<Ecef> expected = to_ecef(Geodetic::degrees(52.155172897, 5.387203657, 43.2551));
+    EXPECT_LT((to_ecef(file->model.origin).vector() - expected.vector()).norm(), 1);
+}
+
 TEST(CityGml, RefusesWithOneClearLine) {
     EXPECT_THAT(citygml_refusal("<CityModel>\n<a>"), HasSubstr("town.gml:2"));
     EXPECT_THAT(citygml_refusal(""), HasSubstr("no XML"));
