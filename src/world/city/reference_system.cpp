@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <tuple>
 
 #include "base/core/lowered_text.hpp"
 #include "world/city/city_file.hpp"
@@ -36,19 +37,21 @@ std::string epsg_definition(std::string_view lower) {
     return heights ? fmt::format("EPSG:{}+{}", *code, *heights) : fmt::format("EPSG:{}", *code);
 }
 
-/// Names of Germany's surveying authorities (AdV, GeoInfoDok): "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH" is UTM, and
-/// behind the asterisk stand heights.
+/// Names of Germany's surveying authorities (AdV, GeoInfoDok): "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH" is UTM,
+/// "DE_DHDN_3GK4" Gauss and Krueger's fourth zone, and behind the asterisk stand heights.
 std::string adv_definition(std::string_view lower) {
-    const std::size_t start = lower.find("etrs89_utm");
-    if (start == std::string_view::npos) return {};
-    constexpr std::size_t length = 12;  // with the zone
-    const std::optional<int> zone = last_number(lower.substr(start, length));
-    if (!zone || *zone < 28 || *zone > 38) return {};
-    const std::string_view heights = lower.substr(std::min(lower.find('*', start), lower.size()));
-    const std::string_view code = heights.empty()                                    ? ""
-                                  : heights.find("dhhn92") != std::string_view::npos ? "+5783"
-                                                                                     : "+7837";
-    return fmt::format("EPSG:{}{}", 25800 + *zone, code);
+    for (const auto& [map, digits, code, first, last] :
+         {std::tuple("etrs89_utm", 2, 25800, 28, 38), std::tuple("de_dhdn_3gk", 1, 31464, 2, 5)}) {
+        const std::size_t start = lower.find(map);
+        if (start == std::string_view::npos) continue;
+        const std::size_t end = start + std::string_view(map).size() + static_cast<std::size_t>(digits);
+        const std::optional<int> zone = last_number(lower.substr(start, end - start));
+        if (!zone || *zone < first || *zone > last) continue;
+        const std::string_view heights = lower.substr(std::min(lower.find('*', start), lower.size()));
+        const bool old = heights.find("dhhn92") != std::string_view::npos;
+        return fmt::format("EPSG:{}{}", code + *zone, heights.empty() ? "" : old ? "+5783" : "+7837");
+    }
+    return {};
 }
 
 }  // namespace
@@ -56,9 +59,8 @@ std::string adv_definition(std::string_view lower) {
 std::optional<ReferenceSystem> reference_system(std::string_view name) {
     if (name.empty()) return std::nullopt;
     const std::string lower = lowered_text(name);
-    if (lower.find("crs84") != std::string::npos) return wgs84_degrees("OGC:CRS84");
-    // WKT names authorities inside.
-    const bool wkt = name.find('[') != std::string_view::npos;
+    const bool wkt = name.find_first_of("[{") != std::string_view::npos;  // or JSON: names other systems inside
+    if (!wkt && lower.find("crs84") != std::string::npos) return wgs84_degrees("OGC:CRS84");
     std::string definition = wkt ? "" : adv_definition(lower);
     if (!wkt && definition.empty()) definition = epsg_definition(lower);
     ReferenceSystem system;

@@ -106,6 +106,23 @@ TEST(ReferenceSystem, TheOtherOrderOfAxesIsKnownByWhereItLies) {
     EXPECT_LT(by_run->model.vertices.at(0).head<2>().norm(), 500);
 }
 
+TEST(ReferenceSystem, NamesOfManyKindsAreRead) {
+    const auto same = [](int place, std::string_view name) {
+        const MappedPlace& p = mapped_places[static_cast<std::size_t>(place)];
+        const auto file = read_roof(roof_file(name, p.east, p.north));
+        ASSERT_TRUE(file) << file.error().message;
+        EXPECT_LT(metres_from(file->model.origin, p.latitude, p.longitude), p.tolerance) << name;
+    };
+    for (const std::string_view name :
+         {"epsg:25832", "urn:ogc:def:crs:EPSG:6.12:25832", "http://www.opengis.net/def/crs/EPSG/0/25832",
+          "http://www.opengis.net/gml/srs/epsg.xml#25832", "urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG:6.12:5783",
+          "urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH", "ETRS89 / UTM zone 32N",
+          "+proj=utm +zone=32 +ellps=GRS80 +type=crs"})
+        same(8, name);
+    for (const std::string_view name : {"urn:adv:crs:DE_DHDN_3GK4", "urn:adv:crs:DE_DHDN_3GK4*DE_DHHN92_NH"})
+        same(7, name);
+}
+
 /// Runs PROJ's program; nothing where it is not installed.
 std::optional<std::pair<double, double>> cs2cs(const MappedPlace& p) {
     const std::string command =
