@@ -22,6 +22,7 @@ namespace {
 constexpr double margin_longitude = 15, margin_latitude = 10;  // °; countries with one zone reach some 700 km beyond it
 constexpr double utm_zone_unit = 1e6;
 constexpr double good_accuracy = 1;  // m, of an operation
+constexpr double same_place = 1000;  // units of a map: there and back by other operations of the same datum
 
 /// Of the name "ETRS89 / UTM zone 32N"; 0 for other maps.
 int utm_zone(std::string_view name) {
@@ -76,9 +77,9 @@ Result<void> EarthMap::read(const std::string& definition) {
         return fail(ErrorCode::input, "is of another kind; expected a system of a map, or of latitudes and longitudes");
     zone_ = utm_zone(proj_get_name(plain.get()));
     const Object axes = object(proj_crs_get_coordinate_system(c, plain.get()));
-    const char* way = "";
-    proj_cs_get_axis_info(c, axes.get(), 0, nullptr, nullptr, &way, nullptr, nullptr, nullptr, nullptr);
-    north_first = std::string_view(way) == "north";
+    const char *axis = "", *way = "";
+    proj_cs_get_axis_info(c, axes.get(), 0, &axis, nullptr, &way, nullptr, nullptr, nullptr, nullptr);
+    north_first = std::string_view(way) == "north" || std::string_view(axis) == "Northing";  // at the pole: south
     wgs84_ = object(proj_create(c, "EPSG:4326"));
     wgs84_heights_ = object(proj_create(c, "EPSG:4979"));
     flat_ = operation(flat_system_, wgs84_);
@@ -168,8 +169,7 @@ EarthMap::Fit EarthMap::fit_of(const Eigen::Vector2d& place) const {
     if (beyond_x > margin_longitude || beyond_y > margin_latitude) return Fit::none;
     // Far from its middle a projection may lead to places that lead elsewhere.
     const PJ_COORD back = proj_trans(flat_.get(), PJ_INV, coordinate(there.x(), there.y()));
-    const double closeness = 1e-6 * std::max(1.0, place.norm());
-    if (!geographic && !((Eigen::Vector2d(back.xy.x, back.xy.y) - place).norm() < closeness)) return Fit::none;
+    if (!geographic && !((Eigen::Vector2d(back.xy.x, back.xy.y) - place).norm() < same_place)) return Fit::none;
     return beyond_x <= 0 && beyond_y <= 0 ? Fit::inside : Fit::near;
 }
 

@@ -60,6 +60,7 @@ constexpr std::array mapped_places{
     MappedPlace{"EPSG:2193", 1748735, 5427507, -41.290186824, 174.776293418, true},
     MappedPlace{"EPSG:2180", 637000, 487000, 52.231977419, 21.006704108, true},
     MappedPlace{"EPSG:31468", 4468000, 5333000, 48.134231331, 11.568634764, true, 1},
+    MappedPlace{"EPSG:32661", 2500000, 1500000, 83.637317561, 45.000000000, true},
     // By formulas of our own in Python: Krueger's series to the third order, Lambert's
     // cone by EPSG guidance note 7-2 (method 9802), the sphere's Mercator.
     MappedPlace{"EPSG:25832", 691603.0320, 5334780.0309, 48.1374, 11.5755},
@@ -118,7 +119,7 @@ TEST(ReferenceSystem, NamesOfManyKindsAreRead) {
           "http://www.opengis.net/gml/srs/epsg.xml#25832", "urn:ogc:def:crs,crs:EPSG:6.12:25832,crs:EPSG:6.12:5783",
           "urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH", "ETRS89 / UTM zone 32N",
           "+proj=utm +zone=32 +ellps=GRS80 +type=crs"})
-        same(8, name);
+        same(9, name);
     for (const std::string_view name : {"urn:adv:crs:DE_DHDN_3GK4", "urn:adv:crs:DE_DHDN_3GK4*DE_DHHN92_NH"})
         same(7, name);
 }
@@ -158,8 +159,8 @@ TEST(ReferenceSystem, CompoundsLieWhereTheirHorizontalSystemDoes) {
          {std::tuple("EPSG:7415", 0, "NAP height"),
           std::tuple("urn:ogc:def:crs,crs:EPSG::28992,crs:EPSG::5709", 0, "NAP height"),
           std::tuple("EPSG:7405", 1, "ODN height"), std::tuple("EPSG:2056+5728", 2, "LN02 height"),
-          std::tuple("EPSG:25832+7837", 8, "DHHN2016 height"), std::tuple("EPSG:25832+5621", 8, "EVRF2007 height"),
-          std::tuple("EPSG:31256+5778", 3, "GHA height"), std::tuple("EPSG:5555", 8, "DHHN92 height")}) {
+          std::tuple("EPSG:25832+7837", 9, "DHHN2016 height"), std::tuple("EPSG:25832+5621", 9, "EVRF2007 height"),
+          std::tuple("EPSG:31256+5778", 3, "GHA height"), std::tuple("EPSG:5555", 9, "DHHN92 height")}) {
         const MappedPlace& p = mapped_places[static_cast<std::size_t>(of)];
         const auto file = read_roof(roof_file(system, p.east, p.north), settings);
         ASSERT_TRUE(file) << file.error().message;
