@@ -9,6 +9,7 @@
 #include <set>
 
 #include "receiver/protocol/nmea_decode.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
@@ -70,10 +71,10 @@ TEST(Emulator, TheEndIsNotPartOfTheRun) {
 
 TEST(Emulator, EachEpochIsHeardOnTheWire) {
     const std::string bytes = wire_bytes(emulator_scenario(at_noon("")), {}, 4s);
-    SentenceSplitter splitter;
+    StreamSplitter splitter;
     int positions = 0;
-    const Bytes raw = to_bytes(bytes);
-    for (const std::string& line : splitter.feed(raw)) {
+    for (const StreamPiece& piece : splitter.feed(to_bytes(bytes))) {
+        const std::string line = to_string(piece.bytes);
         ASSERT_TRUE(decode_nmea(line)) << line;
         positions += line.find("RMC,12000") != std::string::npos ? 1 : 0;
     }
