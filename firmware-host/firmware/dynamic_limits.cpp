@@ -1,4 +1,3 @@
-#include <array>
 #include <cmath>
 
 #include "firmware/state_tracker.hpp"
@@ -6,22 +5,6 @@
 namespace skyloop::firmware {
 namespace {
 
-// Most altitude above sea level, m; most speed over ground and vertical, m/s; whether speeds are looked at.
-struct Limits {
-    double altitude, horizontal, vertical;
-    bool speeds;
-};
-
-constexpr std::array<Limits, 10> model_limits{{{12'000, 310, 50, true},
-                                               {12'000, 310, 50, true},
-                                               {9'000, 10, 6, true},
-                                               {9'000, 30, 20, true},
-                                               {6'000, 100, 15, true},
-                                               {500, 25, 5, true},
-                                               {80'000, 100, 6'400, false},
-                                               {80'000, 250, 10'000, false},
-                                               {80'000, 500, 20'000, false},
-                                               {9'000, 30, 20, true}}};
 // The export limit of all receivers: "velocity 500 m/s" of their data sheets, whose direction they leave open.
 constexpr double fastest_mps = 500;
 
@@ -34,13 +17,9 @@ double altitude_of(const Fix& fix) {
 }  // namespace
 
 bool within_dynamic_model(std::uint64_t number, const Fix& fix, int generation) {
-    const bool airborne = number >= 6 && number <= 8;
-    const Limits limits = model_limits[number < model_limits.size() ? number : 0];
-    const double altitude = altitude_of(fix);
-    const double highest = airborne ? airborne_ceiling(generation).value() : limits.altitude;
-    if (speed_in_space(fix) > fastest_mps || altitude > highest) return false;
-    if (!limits.speeds) return true;
-    return fix.speed.value() <= limits.horizontal && std::abs(fix.velocity.down) <= limits.vertical;
+    const MotionLimits limits = motion_limits(dynamic_model_of(number), airborne_ceiling(generation));
+    return speed_in_space(fix) <= fastest_mps && altitude_of(fix) <= limits.height.value() &&
+           fix.speed <= limits.horizontal_speed && std::abs(fix.velocity.down) <= limits.vertical_speed.value();
 }
 
 Metres airborne_ceiling(int generation) {

@@ -38,14 +38,6 @@ std::set<SystemSignal> chosen_signals(const ConfigStore& store, const std::set<S
     return chosen;
 }
 
-// CFG-NAVSPG-DYNMODEL: 9 wrist, 10 bike, 11 mower and 12 e-scooter move about as the nearest of the others.
-DynamicModel dynamic_model_of(std::uint64_t number) {
-    using enum DynamicModel;
-    constexpr std::array models{portable,    stationary,  stationary, pedestrian, automotive, sea,       airborne_1g,
-                                airborne_2g, airborne_4g, pedestrian, automotive, pedestrian, pedestrian};
-    return number < models.size() ? models[number] : portable;
-}
-
 // Measurement and navigation period of the store, made longer by whole measurements until the board can follow.
 Nanoseconds navigation_period_of(const ConfigStore& store, const BoardProfile& board) {
     const auto measurement = std::chrono::milliseconds(std::max<std::uint64_t>(1, store.value(key::rate_meas)));
@@ -65,6 +57,14 @@ std::uint64_t measurement_period_of(const BoardProfile& board, double rate_hz) {
 }
 
 }  // namespace
+
+// CFG-NAVSPG-DYNMODEL: 9 wrist, 10 bike, 11 mower and 12 e-scooter move about as the nearest of the others.
+DynamicModel dynamic_model_of(std::uint64_t number) {
+    using enum DynamicModel;
+    constexpr std::array models{portable,    stationary,  stationary, pedestrian, automotive, sea,       airborne_1g,
+                                airborne_2g, airborne_4g, pedestrian, automotive, pedestrian, pedestrian};
+    return number < models.size() ? models[number] : portable;
+}
 
 std::uint64_t dynamic_model_number(DynamicModel model) {
     using enum DynamicModel;

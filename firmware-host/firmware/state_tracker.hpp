@@ -92,6 +92,8 @@ private:
 
 /// The number of a dynamic model in CFG-NAVSPG-DYNMODEL.
 std::uint64_t dynamic_model_number(DynamicModel model);
+/// The model of a number of CFG-NAVSPG-DYNMODEL.
+DynamicModel dynamic_model_of(std::uint64_t number);
 /// Whether a dynamic model allows a fix (RECEIVER.md 4.8, table of dynamic models; generation as in Identity).
 /// @param number of CFG-NAVSPG-DYNMODEL
 bool within_dynamic_model(std::uint64_t number, const Fix& fix, int generation);

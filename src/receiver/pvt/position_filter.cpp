@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace skyloop {
 namespace {
@@ -48,28 +47,7 @@ double memory_factor(DynamicModel model) {
 }  // namespace
 
 MotionLimits motion_limits(const ReceiverSettings& settings) {
-    const auto limits = [](double height, double horizontal, double vertical) {
-        return MotionLimits{Metres(height), MetresPerSecond(horizontal), MetresPerSecond(vertical)};
-    };
-    constexpr double any = std::numeric_limits<double>::infinity();
-    if (!settings.dynamic_limits) return limits(any, any, any);
-    switch (settings.dynamic_model) {
-        case DynamicModel::portable:
-            return limits(12000, 310, 50);
-        case DynamicModel::stationary:
-            return limits(9000, 10, 6);
-        case DynamicModel::pedestrian:
-            return limits(9000, 30, 20);
-        case DynamicModel::automotive:
-            return limits(6000, 100, 15);
-        case DynamicModel::sea:
-            return limits(500, 25, 5);
-        case DynamicModel::airborne_1g:
-        case DynamicModel::airborne_2g:
-        case DynamicModel::airborne_4g:
-            return limits(settings.airborne_ceiling.value(), any, any);
-    }
-    return limits(12000, 310, 50);
+    return settings.dynamic_limits ? motion_limits(settings.dynamic_model, settings.airborne_ceiling) : MotionLimits{};
 }
 
 void PositionFilter::reset() { *this = PositionFilter(parameters_); }

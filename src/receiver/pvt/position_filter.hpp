@@ -12,14 +12,7 @@
 
 namespace skyloop {
 
-/// Beyond these a receiver takes its own solution for wrong (u-blox M8 receiver description, table of dynamic
-/// platform models; RECEIVER.md 4.8).
-struct MotionLimits {
-    Metres height;  ///< above mean sea level
-    MetresPerSecond horizontal_speed;
-    MetresPerSecond vertical_speed;
-};
-/// Of the airborne models the ceiling of the settings alone: their speeds are not looked at.
+/// None where the settings have no limits.
 MotionLimits motion_limits(const ReceiverSettings& settings);
 
 /// What one epoch gives the filter.

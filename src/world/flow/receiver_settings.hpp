@@ -7,13 +7,11 @@
 
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
+#include "world/flow/dynamic_model.hpp"
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
 namespace skyloop {
-
-/// How the vehicle is expected to move (u-blox: CFG-NAV5 dynModel).
-enum class DynamicModel { portable, stationary, pedestrian, automotive, sea, airborne_1g, airborne_2g, airborne_4g };
 
 /// What a receiver still knows when it starts.
 enum class StartKind {
