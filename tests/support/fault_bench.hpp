@@ -43,7 +43,7 @@ inline std::string heard_name(const StreamPiece& piece) {
 
 /// Configures the receiver at its factory's speed, then asks at another one, half a second after each full second, for
 /// its version, some of its settings and its consent to one. Hears its line at its own speed alone.
-class AskingClient : public Transport {
+class AskingClient : public Transport, public SimulatedEnd {
 public:
     static constexpr std::uint32_t factory_speed = 38400, speed = 230400;
 
@@ -59,6 +59,7 @@ public:
     }
     Bytes read() override { return std::exchange(outbox_, {}); }
     LineState line() override { return {true, speed_}; }
+    SimulatedEnd* simulated_end() override { return this; }
     void tell_time(GpsTime now) override {
         now_ = now;
         const double run_s = difference(now, start_).value();

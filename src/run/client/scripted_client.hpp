@@ -16,18 +16,19 @@ namespace skyloop {
 /// Its clock is the simulated time; of that it uses differences, and the date for what was known of calendars then. It
 /// acts at whole multiples of 10 ms, on all that has arrived by then, so that what it does is the same however often
 /// the loop looks at it.
-class ScriptedClient : public Transport {
+class ScriptedClient : public Transport, public SimulatedEnd {
 public:
     std::size_t write(ByteSpan bytes) final;
     Bytes read() final { return std::exchange(outbox_, {}); }
     LineState line() final { return {true, speed_}; }
+    SimulatedEnd* simulated_end() final { return this; }
     void tell_time(GpsTime now) final;
     [[nodiscard]] std::optional<GpsTime> acts_at(GpsTime now) const final;
-    std::optional<Belief> new_belief() final { return std::exchange(news_, std::nullopt); }
+    std::optional<ClientBelief> new_belief() final { return std::exchange(news_, std::nullopt); }
     [[nodiscard]] std::string description() const final { return "client:" + name_; }
 
     /// What it believes at present.
-    [[nodiscard]] const Belief& belief() const { return belief_; }
+    [[nodiscard]] const ClientBelief& belief() const { return belief_; }
 
 protected:
     explicit ScriptedClient(std::string name) : name_(std::move(name)) {}
@@ -53,8 +54,8 @@ private:
     std::uint32_t speed_ = 9600;
     GpsTime now_{};
     bool begun_ = false;
-    Belief belief_{false, "nothing heard yet"};
-    std::optional<Belief> news_;
+    ClientBelief belief_{false, "nothing heard yet"};
+    std::optional<ClientBelief> news_;
 };
 
 }  // namespace skyloop

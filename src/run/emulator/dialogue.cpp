@@ -111,7 +111,7 @@ void Dialogue::show(std::size_t wire, bool from_client, const std::vector<Stream
     }
 }
 
-void Dialogue::client_believes(std::size_t wire, const Transport::Belief& belief, GpsTime now) {
+void Dialogue::client_believes(std::size_t wire, const ClientBelief& belief, GpsTime now) {
     listener_.belief({now, station_, wire, belief.trusts, belief.reason});
 }
 

@@ -36,7 +36,7 @@ public:
 
     void client_said(std::size_t wire, ByteSpan bytes, GpsTime now);
     void receiver_said(std::size_t wire, ByteSpan bytes, GpsTime now);
-    void client_believes(std::size_t wire, const Transport::Belief& belief, GpsTime now);
+    void client_believes(std::size_t wire, const ClientBelief& belief, GpsTime now);
 
 private:
     struct Ends {

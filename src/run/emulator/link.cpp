@@ -73,7 +73,7 @@ void Link::set_plugged(bool plugged) {
 }
 
 void Link::look(GpsTime now) {
-    transport_->tell_time(now);
+    if (SimulatedEnd* end = transport_->simulated_end()) end->tell_time(now);
     const LineState line = transport_->line();
     connected_ = line.connected && plugged_;
     // What is left in the driver makes the client wait, as a slow line does.

@@ -57,6 +57,8 @@ public:
     void set_plugged(bool plugged);
     [[nodiscard]] const Transport& transport() const { return *transport_; }
     [[nodiscard]] Transport& transport() { return *transport_; }
+    /// As of Transport.
+    [[nodiscard]] SimulatedEnd* simulated_end() const { return transport_->simulated_end(); }
     [[nodiscard]] const LinkCounters& counters() const { return counters_; }
     [[nodiscard]] bool connected() const { return connected_; }
     /// Nothing will ever cross it again.

@@ -101,7 +101,8 @@ bool Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
     }
     take({});  // what was held, and garbage, come without a client's doing
     if (dialogue == nullptr || wire >= parts_.wires.size()) return any;
-    if (const auto belief = parts_.wires[wire].link.transport().new_belief())
+    SimulatedEnd* end = parts_.wires[wire].link.simulated_end();
+    if (const auto belief = end != nullptr ? end->new_belief() : std::nullopt)
         dialogue->client_believes(wire, *belief, now);
     return any;
 }
@@ -183,15 +184,18 @@ std::optional<GpsTime> Station::next_input(GpsTime now) const {
     std::optional<GpsTime> next;
     for (std::size_t i = 0; i < parts_.wires.size(); ++i) {
         const Link& link = parts_.wires[i].link;
-        for (const auto& at : {link.next_arrival(line_speed(i)), link.transport().acts_at(now)})
+        const SimulatedEnd* end = link.simulated_end();
+        for (const auto& at : {link.next_arrival(line_speed(i)), end != nullptr ? end->acts_at(now) : std::nullopt})
             if (at && (!next || *at < *next)) next = at;
     }
     return next;
 }
 
 bool Station::has_scripted_client() const {
-    return std::any_of(parts_.wires.begin(), parts_.wires.end(),
-                       [](const Wire& w) { return w.link.transport().acts_at({}).has_value(); });
+    return std::any_of(parts_.wires.begin(), parts_.wires.end(), [](const Wire& w) {
+        const SimulatedEnd* end = w.link.simulated_end();
+        return end != nullptr && end->acts_at({});
+    });
 }
 
 // What measurement and solution respect is handed to them with each epoch; the loop itself respects the period.

@@ -105,7 +105,7 @@ public:
 
     std::unique_ptr<Transport> client;
     GpsTime now;
-    std::vector<Transport::Belief> beliefs;
+    std::vector<ClientBelief> beliefs;
     std::vector<StreamPiece> heard;
 
 private:

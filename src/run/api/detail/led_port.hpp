@@ -15,7 +15,7 @@ namespace skyloop {
 ///
 /// The receiver hears on whole milliseconds of GPS time alone, all that has arrived by then, as a driver that polls:
 /// what it does depends on when the bytes set out, not on how the caller cuts time into stretches.
-class LedPort : public Transport {
+class LedPort : public Transport, public SimulatedEnd {
 public:
     explicit LedPort(std::string name) : name_(std::move(name)) {}
 
@@ -23,6 +23,7 @@ public:
     Bytes read() override;
     LineState line() override { return {true, baud_}; }
     void set_receiver_baud(std::uint32_t baud) override { receiver_baud_ = baud; }
+    SimulatedEnd* simulated_end() override { return this; }
     void tell_time(GpsTime now) override { now_ = now; }
     [[nodiscard]] std::optional<GpsTime> acts_at(GpsTime now) const override;
     [[nodiscard]] std::string description() const override { return name_ + " (caller)"; }
