@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <boost/asio/ip/address_v6.hpp>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/header_text.hpp"
 #include "run/control/control_request.hpp"
 
@@ -33,11 +33,11 @@ bool is_ipv6_loopback(std::string_view host) {
 // A name can be made to lead anywhere by whoever owns it; an address cannot. Case and the dot of the root change no
 // name (RFC 9110, section 4.2.3; RFC 1034, section 3.1).
 bool host_is_ours(std::string_view header, const AccessRules& rules) {
-    std::string host = lowered_text(without_port(header));
+    std::string host = lower_case(without_port(header));
     if (host.size() > 1 && host.ends_with('.')) host.pop_back();
     if (host.empty()) return false;
     if (host == "localhost" || is_ipv6_loopback(host) || (is_ipv4(host) && host.starts_with("127."))) return true;
-    if (host == lowered_text(rules.host)) return true;
+    if (host == lower_case(rules.host)) return true;
     return !rules.loopback && (is_ipv4(host) || (host.starts_with('[') && host.ends_with(']')));
 }
 
@@ -53,7 +53,7 @@ bool same_secret(std::string_view given, std::string_view wanted) {
 bool shows_token(const ControlRequest& request, const std::string& token) {
     constexpr std::string_view bearer = "bearer ", subprotocol = "bearer.";
     const std::string_view authorization = without_blanks(request.header("Authorization").value_or(""));
-    if (lowered_text(authorization.substr(0, bearer.size())) == bearer)
+    if (lower_case(authorization.substr(0, bearer.size())) == bearer)
         return same_secret(without_blanks(authorization.substr(bearer.size())), token);
     std::string_view list = request.header("Sec-WebSocket-Protocol").value_or("");
     while (!list.empty()) {

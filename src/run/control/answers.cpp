@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/header_text.hpp"
 #include "detail/json_text.hpp"
 #include "detail/page_files.hpp"
@@ -132,7 +132,7 @@ ControlResponse stop_fault(const ControlRequest& request, const ControlSources& 
 
 std::optional<ControlResponse> wrong_content(const ControlRequest& request) {
     const std::string_view type = request.header("Content-Type").value_or("");
-    if (lowered_text(without_blanks(type.substr(0, type.find(';')))) == "application/json") return std::nullopt;
+    if (lower_case(without_blanks(type.substr(0, type.find(';')))) == "application/json") return std::nullopt;
     return error_response(415, fmt::format("the body is '{}'; expected application/json", type));
 }
 

@@ -1,5 +1,5 @@
 #include "run/control/control_request.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace skyloop {
 namespace {
 
 bool same_header(std::string_view a, std::string_view b) {
-    return a.size() == b.size() && lowered_text(a) == lowered_text(b);
+    return a.size() == b.size() && lower_case(a) == lower_case(b);
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ std::optional<std::string_view> ControlRequest::header(std::string_view name) co
 
 void ControlRequest::take_absolute_form() {
     constexpr std::string_view scheme = "http://";
-    if (lowered_text(std::string_view(target).substr(0, scheme.size())) != scheme) return;
+    if (lower_case(std::string_view(target).substr(0, scheme.size())) != scheme) return;
     const std::size_t end = std::min(target.find_first_of("/?", scheme.size()), target.size());
     std::string host = target.substr(scheme.size(), end - scheme.size());
     target.erase(0, end);

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <charconv>
 #include <chrono>
 #include <random>
 #include <thread>
 
+#include "base/core/number_in.hpp"
 #include "detail/server_core.hpp"
 #include "run/control/status_json.hpp"
 #include "run/emulator/director.hpp"
@@ -95,10 +95,11 @@ Result<ControlOptions> parse_control_address(std::string_view text) {
             host = {};
         options.host = host;
     }
-    const auto read = std::from_chars(port.data(), port.data() + port.size(), options.port);
-    if (options.host.empty() || port.empty() || read.ec != std::errc() || read.ptr != port.data() + port.size())
+    const auto number = number_in<std::uint16_t>(port);
+    if (options.host.empty() || !number)
         return fail(ErrorCode::usage,
                     fmt::format("'{}' is no control address; expected [HOST:]PORT, PORT from 0 to 65535", text));
+    options.port = *number;
     return options;
 }
 

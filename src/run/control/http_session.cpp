@@ -3,12 +3,12 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/websocket.hpp>
-#include <charconv>
 #include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
+#include "base/core/number_in.hpp"
 #include "detail/chunked_body.hpp"
 #include "detail/server_core.hpp"
 
@@ -59,10 +59,8 @@ std::optional<ControlResponse> request_mistake(const error_code& error) {
 std::optional<double> stream_rate(const ControlRequest& request) {
     const auto text = request.query("rate");
     if (!text) return 2.0;
-    double rate = 0;
-    const auto read = std::from_chars(text->data(), text->data() + text->size(), rate);
-    const bool whole = read.ec == std::errc() && read.ptr == text->data() + text->size();
-    return whole && rate >= 1 && rate <= 10 ? std::optional(rate) : std::nullopt;
+    const auto rate = number_in<double>(*text);
+    return rate && *rate >= 1 && *rate <= 10 ? rate : std::nullopt;
 }
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {

@@ -52,8 +52,8 @@ Json posting(std::string_view summary, std::string_view schema) {
 }
 
 // An object of these parameters, one of which tells the kind.
-Json kind_schema(std::pair<std::string_view, std::string> told, std::string_view meaning,
-                 const std::vector<ParameterSpec>& specs) {
+Json kind_schema(std::pair<std::string_view, std::string_view> told, std::string_view meaning,
+                 std::span<const ParameterSpec> specs) {
     Json properties, needed = Json::array({told.first});
     properties[std::string(told.first)] = {{"const", told.second}};
     for (const ParameterSpec& spec : specs) {
@@ -66,13 +66,13 @@ Json kind_schema(std::pair<std::string_view, std::string> told, std::string_view
             {"required", needed},     {"additionalProperties", false}};
 }
 
-ParameterSpec receiver_parameter() { return text_parameter("receiver", "", "name of one receiver; empty: all"); }
+constexpr ParameterSpec receiver_parameter = text_parameter("receiver", "", "name of one receiver; empty: all");
 
 Json commands_schema() {
     Json list = Json::array();
     for (const CommandKind& kind : command_kinds()) {
-        std::vector<ParameterSpec> specs = kind.parameters;
-        if (kind.of_receiver) specs.push_back(receiver_parameter());
+        std::vector<ParameterSpec> specs(kind.parameters.begin(), kind.parameters.end());
+        if (kind.of_receiver) specs.push_back(receiver_parameter);
         list.push_back(kind_schema({"command", kind.name}, kind.meaning, specs));
     }
     return {{"oneOf", std::move(list)}};
@@ -81,10 +81,10 @@ Json commands_schema() {
 Json faults_schema() {
     Json list = Json::array();
     for (const FaultKind& kind : fault_kinds()) {
-        std::vector<ParameterSpec> specs = live_fault_parameters();
+        std::vector<ParameterSpec> specs(std::begin(live_fault_parameters), std::end(live_fault_parameters));
         specs.push_back(texts_parameter("receiver", "names of the receivers that it is for; none given: all"));
         specs.insert(specs.end(), kind.parameters.begin(), kind.parameters.end());
-        list.push_back(kind_schema({"kind", kind.name}, kind.effect + " " + kind.cause, specs));
+        list.push_back(kind_schema({"kind", kind.name}, fmt::format("{} {}", kind.effect, kind.cause), specs));
     }
     return {{"oneOf", std::move(list)}};
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 #include <set>
 
@@ -85,6 +84,10 @@ Result<Json> parsed_object(std::string_view text) {
     }
 }
 
+Json choices_json(const ParameterSpec& spec) {
+    return std::vector<std::string>(spec.choices.begin(), spec.choices.end());
+}
+
 }  // namespace
 
 Result<ParameterMap> parameters_from_json(std::string_view text) {
@@ -107,18 +110,24 @@ Json to_json(const ParameterValue& value) {
     return std::visit([](const auto& held) { return Json(held); }, value);
 }
 
+// Null where there is none.
+static Json standard_json(const ParameterSpec& spec) {
+    const auto standard = spec.standard_value();
+    return standard ? to_json(*standard) : Json(nullptr);
+}
+
 Json to_json(const ParameterSpec& spec) {
     Json json{{"name", spec.name},
               {"type", parameter_type_names[static_cast<std::size_t>(spec.type)]},
               {"meaning", spec.meaning},
               {"needed", spec.needed},
-              {"standard", spec.standard ? to_json(*spec.standard) : Json(nullptr)}};
-    if (spec.least > -std::numeric_limits<double>::max()) json["least"] = spec.least;
-    if (spec.most < std::numeric_limits<double>::max()) json["most"] = spec.most;
-    if (!spec.choices.empty()) json["choices"] = spec.choices;
+              {"standard", standard_json(spec)}};
+    if (spec.least > -ParameterSpec::unlimited) json["least"] = spec.least;
+    if (spec.most < ParameterSpec::unlimited) json["most"] = spec.most;
+    if (!spec.choices.empty()) json["choices"] = choices_json(spec);
     if (spec.type == ParameterType::numbers) {
         json["count_least"] = spec.count_least;
-        if (spec.count_most < std::numeric_limits<std::size_t>::max()) json["count_most"] = spec.count_most;
+        if (spec.count_most < ParameterSpec::any_count) json["count_most"] = spec.count_most;
     }
     return json;
 }
@@ -130,25 +139,25 @@ Json schema_of(const ParameterSpec& spec) {
         case ParameterType::whole_number:
         case ParameterType::numbers:
             item["type"] = spec.type == ParameterType::whole_number ? "integer" : "number";
-            if (spec.least > -std::numeric_limits<double>::max()) item["minimum"] = spec.least;
-            if (spec.most < std::numeric_limits<double>::max()) item["maximum"] = spec.most;
+            if (spec.least > -ParameterSpec::unlimited) item["minimum"] = spec.least;
+            if (spec.most < ParameterSpec::unlimited) item["maximum"] = spec.most;
             break;
         case ParameterType::flag:
             item["type"] = "boolean";
             break;
         default:
             item["type"] = "string";
-            if (!spec.choices.empty()) item["enum"] = spec.choices;
+            if (!spec.choices.empty()) item["enum"] = choices_json(spec);
     }
     Json schema = item;
     if (spec.type == ParameterType::numbers) {
         schema = {{"type", "array"}, {"items", item}, {"minItems", spec.count_least}};
-        if (spec.count_most < std::numeric_limits<std::size_t>::max()) schema["maxItems"] = spec.count_most;
+        if (spec.count_most < ParameterSpec::any_count) schema["maxItems"] = spec.count_most;
     }
     if (spec.type == ParameterType::texts || spec.type == ParameterType::words)
         schema = {{"oneOf", Json::array({item, {{"type", "array"}, {"items", item}, {"minItems", spec.count_least}}})}};
     schema["description"] = spec.meaning;
-    if (spec.standard) schema["default"] = to_json(*spec.standard);
+    if (const Json standard = standard_json(spec); !standard.is_null()) schema["default"] = standard;
     return schema;
 }
 

@@ -17,11 +17,6 @@ void silence(Arrival& arrival) {
     arrival.cut_off = true;
 }
 
-ParameterSpec detected_after_parameter() {
-    return number_parameter("detected_after_s", std::nullopt, 0, 1e6,
-                            "s from the start until the receiver's own detector indicates spoofing; not given: never");
-}
-
 Edit<Epoch> detected_after(const Parameters& parameters) {
     const auto after = parameters.optional_number("detected_after_s");
     if (!after) return {};

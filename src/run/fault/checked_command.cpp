@@ -13,8 +13,6 @@
 namespace skyloop {
 namespace {
 
-constexpr double longest_live_fault_s = 1e9;
-
 // Any bytes as a piece of one line.
 std::string shown_name(std::string_view text) {
     constexpr std::size_t longest = 60;
@@ -25,7 +23,7 @@ std::string shown_name(std::string_view text) {
 }
 
 template <class Kind>
-std::string not_a_kind(std::string_view what, const std::string& name, const std::vector<Kind>& kinds) {
+std::string not_a_kind(std::string_view what, std::string_view name, std::span<const Kind> kinds) {
     std::vector<std::string_view> names;
     for (const Kind& kind : kinds)
         names.push_back(kind.name);
@@ -74,9 +72,9 @@ Result<Command> checked_live_fault(ParameterMap members, std::string_view source
     if (!name) return fail(name.error());
     if (name->empty()) return fail(ErrorCode::input, "'kind' is missing; expected the name of a kind of fault");
     const FaultKind* kind = find_fault_kind(*name);
-    if (kind == nullptr) return fail(ErrorCode::input, not_a_kind("kind", *name, fault_kinds()));
+    if (kind == nullptr) return fail(ErrorCode::input, not_a_kind<FaultKind>("kind", *name, fault_kinds()));
 
-    std::vector<ParameterSpec> specs = live_fault_parameters();
+    std::vector<ParameterSpec> specs(std::begin(live_fault_parameters), std::end(live_fault_parameters));
     specs.insert(specs.end(), kind->parameters.begin(), kind->parameters.end());
     members.emplace("kind", *name);
     CheckedParameters checked = check_parameters(specs, members);
@@ -87,21 +85,9 @@ Result<Command> checked_live_fault(ParameterMap members, std::string_view source
     ParameterMap values = checked.parameters.values();
     if (checked.parameters.text("name").empty()) values["name"] = *name;
     command.parameters = Parameters(std::move(values));
-    if (kind->make) {
-        const auto made = kind->make(command.parameters, FaultContext{1, *name});
-        if (!made) return fail(ErrorCode::input, made.error().message);
-    }
+    const auto made = kind->make(command.parameters, FaultContext{1, *name});
+    if (!made) return fail(ErrorCode::input, made.error().message);
     return command;
-}
-
-const std::vector<ParameterSpec>& live_fault_parameters() {
-    static const std::vector<ParameterSpec> specs{
-        text_parameter("kind", "", "kind of the fault"),
-        text_parameter("name", "", "how it is called; empty: as its kind"),
-        number_parameter("for_s", std::nullopt, 0, longest_live_fault_s, "how long, s; else until it is stopped"),
-        number_parameter("ramp_in_s", 0, 0, longest_live_fault_s, "s in which it grows to its full strength"),
-        number_parameter("ramp_out_s", 0, 0, longest_live_fault_s, "s in which it fades after its end")};
-    return specs;
 }
 
 Result<Command> checked_command(ParameterMap members, std::string_view source) {
@@ -109,7 +95,7 @@ Result<Command> checked_command(ParameterMap members, std::string_view source) {
     if (!name) return fail(name.error());
     if (name->empty()) return fail(ErrorCode::input, "'command' is missing; expected the name of a command");
     const CommandKind* kind = find_command_kind(*name);
-    if (kind == nullptr) return fail(ErrorCode::input, not_a_kind("command", *name, command_kinds()));
+    if (kind == nullptr) return fail(ErrorCode::input, not_a_kind<CommandKind>("command", *name, command_kinds()));
     if (kind->verb == CommandVerb::start_fault && members.contains("kind"))
         return checked_live_fault(std::move(members), source);
 

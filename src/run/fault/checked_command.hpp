@@ -27,7 +27,11 @@ Result<Command> checked_command(ParameterMap members, std::string_view source);
 Result<Command> checked_live_fault(ParameterMap members, std::string_view source);
 
 /// The parameters that every live fault takes beside those of its kind: kind, name, for_s, ramp_in_s, ramp_out_s.
-const std::vector<ParameterSpec>& live_fault_parameters();
+inline constexpr ParameterSpec live_fault_parameters[] = {
+    text_parameter("kind", "", "kind of the fault"), text_parameter("name", "", "how it is called; empty: as its kind"),
+    number_parameter("for_s", no_standard, 0, 1e9, "how long, s; else until it is stopped"),
+    number_parameter("ramp_in_s", 0, 0, 1e9, "s in which it grows to its full strength"),
+    number_parameter("ramp_out_s", 0, 0, 1e9, "s in which it fades after its end")};
 
 /// What is wrong with the receiver that a command is for, or nothing: only the run knows who there is.
 /// @param receivers names of those of the run

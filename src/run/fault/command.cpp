@@ -4,99 +4,86 @@
 #include <utility>
 
 #include "base/geo/geodetic.hpp"
+#include "firmware/start_kind.hpp"
 
 namespace skyloop {
 namespace {
 
-// What is not given stays as it was told before.
-std::vector<ParameterSpec> vehicle_parameters() {
-    ParameterSpec mode = text_parameter("mode", "", "name of its mode: \"AUTO\"");
-    mode.standard.reset();
-    ParameterSpec armed = flag_parameter("armed", false, "motors may turn");
-    armed.standard.reset();
-    return {mode, whole_number_parameter("custom_mode", std::nullopt, 0, 4294967295.0, "its number in HEARTBEAT"),
-            armed};
-}
+using Verb = CommandVerb;
+constexpr bool live = true, of_receivers = true;
 
-std::vector<CommandKind> run_commands() {
-    using Verb = CommandVerb;
-    return {{Verb::start_fault,
-             "start_fault",
-             "Begins a fault of the scenario now, by its name.",
-             {text_parameter("fault", "", "name of a fault of the scenario"),
-              number_parameter("for_s", std::nullopt, 0, 1e9, "how long; else as the scenario says")}},
-            {Verb::stop_fault,
-             "stop_fault",
-             "Ends a fault now; its ramp out still runs.",
-             {text_parameter("fault", "", "name of a fault; empty: all")}},
-            {Verb::move_to,
-             "move_to",
-             "The vehicle is moved: its path goes on from there.",
-             {place_parameter("at", true, "[latitude, longitude] or [latitude, longitude, height]")}},
-            {Verb::vehicle_state, "vehicle_state",
-             "What the vehicle's autopilot tells of itself, for triggers: of --mavlink, or by hand. What is not given "
-             "stays "
-             "as it was.",
-             vehicle_parameters()},
-            {Verb::note, "note", "A text for the record.", {text_parameter("text", "", "what is to be written down")}},
-            {Verb::stop, "stop", "The run ends.", {}}};
-}
+constexpr ParameterSpec start_parameter =
+    word_parameter("start", "hot", firmware::start_kind_names, "what it still knows");
 
-std::vector<CommandKind> receiver_commands() {
-    using Verb = CommandVerb;
-    const auto start = word_parameter("start", "hot", {"cold", "warm", "hot"}, "what it still knows");
-    return {
-        {Verb::restart, "restart", "The receiver's navigation starts anew, its configuration stays.", {start}},
-        {Verb::reboot, "reboot", "The receiver starts anew as after a hardware reset: banner, stored speed.", {start}},
-        {Verb::forget_configuration,
-         "forget_configuration",
-         "The receiver is as at the factory, its speed among it, and says nothing of it.",
-         {}},
-        {Verb::set_baud,
-         "set_baud",
-         "The receiver's first UART has another speed from now on.",
-         {needed_whole_number("baud", 300, 12e6, "bit/s")}}};
-}
-
-std::vector<CommandKind> pace_commands() {
-    using Verb = CommandVerb;
-    return {{Verb::pause, "pause", "Simulated time stands still.", {}},
-            {Verb::resume, "resume", "Simulated time goes on.", {}},
-            {Verb::step,
-             "step",
-             "A paused run goes on by so much.",
-             {number_parameter("seconds", 1, 1e-3, 86400, "s of simulated time")}},
-            {Verb::speed,
-             "speed",
-             "Simulated seconds per second from now on.",
-             {needed_number("factor", 1e-3, 1e6, "simulated seconds per second")}}};
-}
-
-std::vector<CommandKind> all_command_kinds() {
-    std::vector<CommandKind> all = run_commands();
-    for (CommandKind& kind : receiver_commands()) {
-        kind.of_receiver = true;
-        all.push_back(std::move(kind));
-    }
-    for (CommandKind& kind : pace_commands()) {
-        kind.live_only = true;
-        all.push_back(std::move(kind));
-    }
-    return all;
-}
+constexpr CommandKind kinds_of_commands[] = {
+    {Verb::start_fault,
+     "start_fault",
+     "Begins a fault of the scenario now, by its name.",
+     {text_parameter("fault", "", "name of a fault of the scenario"),
+      number_parameter("for_s", no_standard, 0, 1e9, "how long; else as the scenario says")}},
+    {Verb::stop_fault,
+     "stop_fault",
+     "Ends a fault now; its ramp out still runs.",
+     {text_parameter("fault", "", "name of a fault; empty: all")}},
+    {Verb::move_to,
+     "move_to",
+     "The vehicle is moved: its path goes on from there.",
+     {place_parameter("at", "[latitude, longitude] or [latitude, longitude, height]").that_is_needed()}},
+    // What is not given stays as it was told before.
+    {Verb::vehicle_state,
+     "vehicle_state",
+     "What the vehicle's autopilot tells of itself, for triggers: of --mavlink, or by hand. What is not given stays "
+     "as it was.",
+     {text_parameter("mode", "", "name of its mode: \"AUTO\"").without_standard(),
+      whole_number_parameter("custom_mode", no_standard, 0, 4294967295.0, "its number in HEARTBEAT"),
+      flag_parameter("armed", false, "motors may turn").without_standard()}},
+    {Verb::note, "note", "A text for the record.", {text_parameter("text", "", "what is to be written down")}},
+    {Verb::stop, "stop", "The run ends.", {}},
+    {Verb::restart,
+     "restart",
+     "The receiver's navigation starts anew, its configuration stays.",
+     {start_parameter},
+     !live,
+     of_receivers},
+    {Verb::reboot,
+     "reboot",
+     "The receiver starts anew as after a hardware reset: banner, stored speed.",
+     {start_parameter},
+     !live,
+     of_receivers},
+    {Verb::forget_configuration,
+     "forget_configuration",
+     "The receiver is as at the factory, its speed among it, and says nothing of it.",
+     {},
+     !live,
+     of_receivers},
+    {Verb::set_baud,
+     "set_baud",
+     "The receiver's first UART has another speed from now on.",
+     {whole_number_parameter("baud", no_standard, 300, 12e6, "bit/s").that_is_needed()},
+     !live,
+     of_receivers},
+    {Verb::pause, "pause", "Simulated time stands still.", {}, live},
+    {Verb::resume, "resume", "Simulated time goes on.", {}, live},
+    {Verb::step,
+     "step",
+     "A paused run goes on by so much.",
+     {number_parameter("seconds", 1, 1e-3, 86400, "s of simulated time")},
+     live},
+    {Verb::speed,
+     "speed",
+     "Simulated seconds per second from now on.",
+     {needed_number("factor", 1e-3, 1e6, "simulated seconds per second")},
+     live}};
 
 }  // namespace
 
-const std::vector<CommandKind>& command_kinds() {
-    static const std::vector<CommandKind> kinds = all_command_kinds();
-    return kinds;
-}
+std::span<const CommandKind> command_kinds() { return kinds_of_commands; }
 
 const CommandKind* find_command_kind(std::string_view name) {
-    const std::vector<CommandKind>& kinds = command_kinds();
-    const auto found =
-        std::find_if(kinds.begin(), kinds.end(), [&](const CommandKind& kind) { return kind.name == name; });
-    return found == kinds.end() ? nullptr : &*found;
+    const auto* const found = std::find_if(std::begin(kinds_of_commands), std::end(kinds_of_commands),
+                                           [&](const CommandKind& kind) { return kind.name == name; });
+    return found == std::end(kinds_of_commands) ? nullptr : found;
 }
 
 std::string_view command_name(CommandVerb verb) {

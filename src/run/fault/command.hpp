@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,14 +49,14 @@ inline constexpr std::string_view silence_source = "silence";
 
 /// A command that can be asked for.
 struct CommandKind {
-    CommandVerb verb;
-    std::string name;     ///< "move_to"
-    std::string meaning;  ///< a sentence
-    std::vector<ParameterSpec> parameters;
+    CommandVerb verb = CommandVerb::note;
+    std::string_view name{};     ///< "move_to"
+    std::string_view meaning{};  ///< a sentence
+    ParameterList parameters{};
     bool live_only = false;    ///< nothing in virtual time
     bool of_receiver = false;  ///< may be for one receiver alone
 };
-const std::vector<CommandKind>& command_kinds();
+std::span<const CommandKind> command_kinds();
 const CommandKind* find_command_kind(std::string_view name);
 /// "move_to"
 std::string_view command_name(CommandVerb verb);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "detail/large_letters.hpp"
+#include "base/core/letter_case.hpp"
 #include "firmware/septentrio/settings_table.hpp"
 
 namespace skyloop {
@@ -73,7 +73,7 @@ std::optional<std::string> command_line_name(std::string_view line) {
 bool begins_some_command(std::string_view prefix) {
     const auto& names = command_names();
     return std::any_of(names.begin(), names.end(),
-                       [prefix](const CommandName& name) { return large_letters(name.mnemonic).starts_with(prefix); });
+                       [prefix](const CommandName& name) { return upper_case(name.mnemonic).starts_with(prefix); });
 }
 
 bool is_setting_command(std::string_view mnemonic) {

@@ -8,9 +8,14 @@
 namespace skyloop {
 
 const std::vector<FaultKind>& fault_kinds() {
-    static const std::vector<FaultKind> kinds =
-        all_kinds_of({reception_fault_kinds, spoofing_fault_kinds, satellite_fault_kinds, position_fault_kinds,
-                      time_fault_kinds, receiver_fault_kinds, wire_fault_kinds});
+    static const std::vector<FaultKind> kinds = [] {
+        std::vector<FaultKind> all;
+        for (const auto& layer :
+             {reception_fault_kinds(), spoofing_fault_kinds(), satellite_fault_kinds(), position_fault_kinds(),
+              time_fault_kinds(), receiver_fault_kinds(), wire_fault_kinds()})
+            all.insert(all.end(), layer.begin(), layer.end());
+        return all;
+    }();
     return kinds;
 }
 

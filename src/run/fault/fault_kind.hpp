@@ -74,18 +74,21 @@ struct FaultContext {
     }
 };
 
-/// A fault that can be asked for.
+/// A fault that can be asked for, as constant data.
 struct FaultKind {
-    std::string name;  ///< as scenario files have it: "byte_loss"
-    FaultLayer layer = FaultLayer::signals;
-    std::string effect;  ///< what it does, a sentence
-    std::string cause;   ///< what brings it about in the world, a sentence
-    std::vector<ParameterSpec> parameters{};
+    std::string_view name{};    ///< as scenario files have it: "byte_loss"
+    std::string_view effect{};  ///< what it does, a sentence
+    std::string_view cause{};   ///< what brings it about in the world, a sentence
+    ParameterList parameters{};
     /// Fails with `usage` for parameters that contradict each other.
-    std::function<Result<Fault>(const Parameters&, const FaultContext&)> make{};
+    Result<Fault> (*make)(const Parameters&, const FaultContext&) = nullptr;
     bool measuring_receivers_only = false;  ///< nothing to see with a sensor model, which measures nothing
     bool has_strength = true;               ///< it can be there in part, and so grow and fade along ramps
+    FaultLayer layer = FaultLayer::signals;
 };
+
+// What rows of tables of kinds say of themselves.
+inline constexpr bool of_measurements = true, with_strength = true;
 
 /// All of them, by layer, then in the order in which people list them.
 const std::vector<FaultKind>& fault_kinds();

@@ -9,16 +9,7 @@
 namespace skyloop {
 namespace {
 
-std::string value_text(const ParameterValue& value) {
-    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:g}", *number);
-    if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-    if (const auto* text = std::get_if<std::string>(&value)) return fmt::format("\"{}\"", *text);
-    if (const auto* numbers = std::get_if<std::vector<double>>(&value))
-        return fmt::format("[{}]", fmt::join(*numbers, ", "));
-    return fmt::format("[\"{}\"]", fmt::join(std::get<std::vector<std::string>>(value), "\", \""));
-}
-
-bool has_limit(double limit) { return std::abs(limit) < std::numeric_limits<double>::max(); }
+bool has_limit(double limit) { return std::abs(limit) < ParameterSpec::unlimited; }
 
 std::string limits_text(const ParameterSpec& spec) {
     if (has_limit(spec.least) && has_limit(spec.most)) return fmt::format(", {:g} to {:g}", spec.least, spec.most);
@@ -50,12 +41,13 @@ std::string type_text(const ParameterSpec& spec) {
 
 std::string standard_text(const ParameterSpec& spec) {
     if (spec.needed) return "needed";
-    if (!spec.standard) return "none";
-    const auto* text = std::get_if<std::string>(&*spec.standard);
-    return text != nullptr && text->empty() ? "none" : value_text(*spec.standard);
+    if (const double* number = std::get_if<double>(&spec.standard)) return fmt::format("{:g}", *number);
+    if (const bool* flag = std::get_if<bool>(&spec.standard)) return *flag ? "true" : "false";
+    const auto* text = std::get_if<std::string_view>(&spec.standard);
+    return text == nullptr || text->empty() ? "none" : fmt::format("\"{}\"", *text);
 }
 
-std::string parameter_table(const std::vector<ParameterSpec>& specs) {
+std::string parameter_table(std::span<const ParameterSpec> specs) {
     if (specs.empty()) return "";
     std::string table = "| parameter | takes | default | meaning |\n|---|---|---|---|\n";
     for (const ParameterSpec& spec : specs)

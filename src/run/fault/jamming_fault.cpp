@@ -183,34 +183,28 @@ Result<Fault> make_jamming(const Parameters& parameters, const FaultContext&) {
     return fault;
 }
 
-std::vector<ParameterSpec> jamming_parameters() {
-    return {number_parameter("j_to_s_db", std::nullopt, -20, 150,
-                             "dB of the jammer over a signal of nominal power (−157 dBW) at the antenna"),
-            place_parameter("jammer_at", false, "where the jammer stands, in place of j_to_s_db: degrees, metres"),
-            number_parameter("eirp_dbw", std::nullopt, -80, 60, "dBW that a jammer at a place radiates"),
-            word_parameter("spectrum", "matched", {"narrow", "matched", "wide"}, "its spectrum against the signals'"),
-            number_parameter("sweep_s", std::nullopt, 1e-3, 3600,
-                             "s for one pass from 1166 to 1611 MHz; epochs see the share"),
-            number_parameter("sweep_duty", std::nullopt, 0.001, 1, "of a pass, for which it hits a carrier; 0.2"),
-            number_parameter("pulse_duty", std::nullopt, 1e-4, 1, "of the time, for which it is on"),
-            number_parameter("pulse_s", std::nullopt, 1e-3, 3600,
-                             "s from pulse to pulse, of which epochs see the share; not given: the average")};
-}
+constexpr std::string_view spectra[] = {"narrow", "matched", "wide"};
+
+constexpr ParameterList jamming_parameters{
+    number_parameter("j_to_s_db", no_standard, -20, 150,
+                     "dB of the jammer over a signal of nominal power (−157 dBW) at the antenna"),
+    place_parameter("jammer_at", "where the jammer stands, in place of j_to_s_db: degrees, metres"),
+    number_parameter("eirp_dbw", no_standard, -80, 60, "dBW that a jammer at a place radiates"),
+    word_parameter("spectrum", "matched", spectra, "its spectrum against the signals'"),
+    number_parameter("sweep_s", no_standard, 1e-3, 3600, "s for one pass from 1166 to 1611 MHz; epochs see the share"),
+    number_parameter("sweep_duty", no_standard, 0.001, 1, "of a pass, for which it hits a carrier; 0.2"),
+    number_parameter("pulse_duty", no_standard, 1e-4, 1, "of the time, for which it is on"),
+    number_parameter("pulse_s", no_standard, 1e-3, 3600,
+                     "s from pulse to pulse, of which epochs see the share; not given: the average")};
 
 }  // namespace
 
-FaultKind jamming_fault_kind() {
-    FaultKind kind;
-    kind.name = "jamming";
-    kind.effect =
-        "The noise floor of the selected signals rises: C/N0 falls, then lock is lost, and the receiver's "
-        "monitor sees interference.";
-    kind.cause =
-        "Personal privacy devices in cars, military jamming near conflicts, a transmitter or a switching "
-        "supply on board.";
-    kind.parameters = joined(jamming_parameters(), selector_parameters(true));
-    kind.make = make_jamming;
-    return kind;
-}
+constexpr FaultKind jamming_fault{
+    "jamming",
+    "The noise floor of the selected signals rises: C/N0 falls, then lock is lost, and the receiver's "
+    "monitor sees interference.",
+    "Personal privacy devices in cars, military jamming near conflicts, a transmitter or a switching "
+    "supply on board.",
+    jamming_parameters + signal_selector, make_jamming};
 
 }  // namespace skyloop

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
+#include "base/core/letter_case.hpp"
 #include "base/core/spelling.hpp"
-#include "detail/large_letters.hpp"
 #include "receiver/protocol/ubx_names.hpp"
 #include "run/fault/command_names.hpp"
 
@@ -81,14 +81,14 @@ bool may_be_message(std::string_view name) {
 }  // namespace
 
 bool is_message_named(std::string_view name, std::string_view wanted) {
-    const std::string large = large_letters(name), pattern = large_letters(wanted);
+    const std::string large = upper_case(name), pattern = upper_case(wanted);
     if (pattern == "ANYTHING") return true;
     if (pattern.ends_with('*')) return large.starts_with(std::string_view(pattern).substr(0, pattern.size() - 1));
-    return large == pattern || large == large_letters(command_mnemonic(wanted).value_or(wanted));
+    return large == pattern || large == upper_case(command_mnemonic(wanted).value_or(wanted));
 }
 
 std::optional<std::string> message_name_mistake(std::string_view wanted) {
-    const std::string name = large_letters(wanted);
+    const std::string name = upper_case(wanted);
     const bool possible =
         name.ends_with('*') ? begins_some(std::string_view(name).substr(0, name.size() - 1)) : may_be_message(name);
     if (possible) return std::nullopt;

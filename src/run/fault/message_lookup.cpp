@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <vector>
 
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 #include "base/core/spelling.hpp"
-#include "detail/large_letters.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/message_names.hpp"
 #include "receiver/protocol/ubx_names.hpp"
@@ -36,10 +36,7 @@ std::vector<NamedMessage> named_messages() {
 }
 
 std::optional<std::uint8_t> hexadecimal_byte(std::string_view digits) {
-    std::uint8_t value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-    if (digits.size() != 2 || error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
-    return value;
+    return digits.size() == 2 ? hexadecimal_number_in<std::uint8_t>(digits) : std::nullopt;
 }
 
 // "UBX-0F-01".
@@ -58,7 +55,7 @@ Error nothing_named(std::string_view parameter, std::string_view expected) {
 }  // namespace
 
 Result<UbxMessageId> find_message(std::string_view name) {
-    std::string wanted = large_letters(name);
+    std::string wanted = upper_case(name);
     if (const auto id = message_by_number(wanted)) return *id;
     if (wanted.starts_with("PUBX,")) wanted[4] = '-';
     std::vector<std::string_view> known;
@@ -85,7 +82,7 @@ Result<std::set<UbxMessageId>> read_messages(const Parameters& parameters, std::
 Result<std::set<std::uint32_t>> read_items(const Parameters& parameters, std::string_view parameter) {
     std::set<std::uint32_t> items;
     for (const std::string& name : parameters.texts(parameter)) {
-        const std::string wanted = large_letters(name);
+        const std::string wanted = upper_case(name);
         const firmware::ConfigKey* key = firmware::find_config_key(wanted);
         if (key == nullptr) {
             std::vector<std::string_view> known;

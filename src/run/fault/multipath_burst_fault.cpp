@@ -62,20 +62,16 @@ Result<Fault> make_multipath_burst(const Parameters& parameters, const FaultCont
 
 }  // namespace
 
-FaultKind multipath_burst_fault_kind() {
-    FaultKind kind;
-    kind.name = "multipath_burst";
-    kind.effect = "Random satellites get an echo, each for a while: ranges are off by metres, C/N0 swings.";
-    kind.cause = "Passing trucks, cranes, glass and metal façades, the metal roof under a landing drone.";
-    kind.parameters =
-        joined({number_parameter("share", 0.5, 0, 1, "of the satellites that have an echo at a time"),
-                number_parameter("excess_m", 60, 1, 500, "m of the echo's way over the direct one, at most"),
-                number_parameter("amplitude", 0.7, 0, 1, "of the strongest echoes over the direct ray"),
-                number_parameter("change_s", 5, 0.1, 3600, "s for which an echo lasts")},
-               selector_parameters(false));
-    kind.make = make_multipath_burst;
-    kind.measuring_receivers_only = true;
-    return kind;
-}
+constexpr FaultKind multipath_burst_fault{
+    "multipath_burst",
+    "Random satellites get an echo, each for a while: ranges are off by metres, C/N0 swings.",
+    "Passing trucks, cranes, glass and metal façades, the metal roof under a landing drone.",
+    ParameterList{number_parameter("share", 0.5, 0, 1, "of the satellites that have an echo at a time"),
+                  number_parameter("excess_m", 60, 1, 500, "m of the echo's way over the direct one, at most"),
+                  number_parameter("amplitude", 0.7, 0, 1, "of the strongest echoes over the direct ray"),
+                  number_parameter("change_s", 5, 0.1, 3600, "s for which an echo lasts")} +
+        satellite_selector,
+    make_multipath_burst,
+    of_measurements};
 
 }  // namespace skyloop

@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "base/core/number_in.hpp"
 #include "base/core/spelling.hpp"
 
 namespace skyloop {
@@ -17,9 +17,7 @@ using Accepted = tl::expected<ParameterValue, ParameterMistake>;
 // With as many digits as it takes to tell it from its neighbours: 1.0000001 is not 1.
 std::string number_text(double number) {
     const std::string text = fmt::format("{:g}", number);
-    double read = 0;
-    std::from_chars(text.data(), text.data() + text.size(), read);
-    return std::isfinite(number) && read != number ? fmt::format("{}", number) : text;
+    return std::isfinite(number) && number_in<double>(text) != number ? fmt::format("{}", number) : text;
 }
 
 std::string found(const ParameterValue& value) {
@@ -33,10 +31,11 @@ std::string found(const ParameterValue& value) {
 }
 
 Accepted refused(const ParameterSpec& spec, const ParameterValue& value, const std::string& expected) {
-    return tl::make_unexpected(ParameterMistake{spec.name, fmt::format("is {}; expected {}", found(value), expected)});
+    return tl::make_unexpected(
+        ParameterMistake{std::string(spec.name), fmt::format("is {}; expected {}", found(value), expected)});
 }
 
-bool unlimited(double limit) { return std::abs(limit) >= std::numeric_limits<double>::max(); }
+bool unlimited(double limit) { return std::abs(limit) >= ParameterSpec::unlimited; }
 
 std::string range_text(const ParameterSpec& spec) {
     if (unlimited(spec.least) && unlimited(spec.most)) return "";
@@ -87,7 +86,7 @@ Accepted accept_texts(const ParameterSpec& spec, const ParameterValue& value) {
 
 std::string count_text(const ParameterSpec& spec) {
     if (spec.count_least == spec.count_most) return fmt::format("{}", spec.count_least);
-    if (spec.count_most == std::numeric_limits<std::size_t>::max()) return fmt::format("at least {}", spec.count_least);
+    if (spec.count_most == ParameterSpec::any_count) return fmt::format("at least {}", spec.count_least);
     return fmt::format("{} to {}", spec.count_least, spec.count_most);
 }
 
@@ -98,8 +97,8 @@ Accepted accept_numbers(const ParameterSpec& spec, const ParameterValue& value) 
         return refused(spec, value, expected);
     for (const double number : *numbers)
         if (!within(spec, number))
-            return tl::make_unexpected(
-                ParameterMistake{spec.name, fmt::format("holds {}; expected {}", number_text(number), expected)});
+            return tl::make_unexpected(ParameterMistake{
+                std::string(spec.name), fmt::format("holds {}; expected {}", number_text(number), expected)});
     return *numbers;
 }
 
@@ -109,7 +108,7 @@ const Value* find_value(const std::map<std::string, ParameterValue, std::less<>>
     return found_value == values.end() ? nullptr : std::get_if<Value>(&found_value->second);
 }
 
-std::vector<std::string_view> names_of(const std::vector<ParameterSpec>& specs) {
+std::vector<std::string_view> names_of(std::span<const ParameterSpec> specs) {
     std::vector<std::string_view> names;
     for (const ParameterSpec& spec : specs)
         names.push_back(spec.name);
@@ -118,86 +117,11 @@ std::vector<std::string_view> names_of(const std::vector<ParameterSpec>& specs) 
 
 }  // namespace
 
-ParameterSpec number_parameter(std::string name, std::optional<double> standard, double least, double most,
-                               std::string meaning) {
-    ParameterSpec spec{std::move(name), ParameterType::number, std::move(meaning)};
-    if (standard) spec.standard = *standard;
-    spec.least = least;
-    spec.most = most;
-    return spec;
-}
-
-ParameterSpec whole_number_parameter(std::string name, std::optional<double> standard, double least, double most,
-                                     std::string meaning) {
-    ParameterSpec spec = number_parameter(std::move(name), standard, least, most, std::move(meaning));
-    spec.type = ParameterType::whole_number;
-    return spec;
-}
-
-ParameterSpec needed_number(std::string name, double least, double most, std::string meaning) {
-    ParameterSpec spec = number_parameter(std::move(name), std::nullopt, least, most, std::move(meaning));
-    spec.needed = true;
-    return spec;
-}
-
-ParameterSpec needed_whole_number(std::string name, double least, double most, std::string meaning) {
-    ParameterSpec spec = needed_number(std::move(name), least, most, std::move(meaning));
-    spec.type = ParameterType::whole_number;
-    return spec;
-}
-
-ParameterSpec flag_parameter(std::string name, bool standard, std::string meaning) {
-    return {std::move(name), ParameterType::flag, std::move(meaning), standard};
-}
-
-ParameterSpec word_parameter(std::string name, std::string standard, std::vector<std::string> choices,
-                             std::string meaning) {
-    ParameterSpec spec{std::move(name), ParameterType::word, std::move(meaning), std::move(standard)};
-    spec.choices = std::move(choices);
-    return spec;
-}
-
-ParameterSpec words_parameter(std::string name, std::vector<std::string> choices, std::string meaning) {
-    ParameterSpec spec{std::move(name), ParameterType::words, std::move(meaning)};
-    spec.count_least = 1;
-    spec.choices = std::move(choices);
-    return spec;
-}
-
-ParameterSpec text_parameter(std::string name, std::string standard, std::string meaning) {
-    return {std::move(name), ParameterType::text, std::move(meaning), std::move(standard)};
-}
-
-ParameterSpec texts_parameter(std::string name, std::string meaning) {
-    ParameterSpec spec{std::move(name), ParameterType::texts, std::move(meaning)};
-    spec.count_least = 1;
-    return spec;
-}
-
-ParameterSpec place_parameter(std::string name, bool needed, std::string meaning) {
-    ParameterSpec spec{std::move(name), ParameterType::numbers, std::move(meaning)};
-    spec.needed = needed;
-    spec.count_least = 2;
-    spec.count_most = 3;
-    return spec;
-}
-
-ParameterSpec polygon_parameter(std::string name, std::string meaning) {
-    ParameterSpec spec{std::move(name), ParameterType::numbers, std::move(meaning)};
-    spec.count_least = 6;
-    spec.least = -360;
-    spec.most = 360;
-    return spec;
-}
-
-ParameterSpec numbers_parameter(std::string name, std::optional<std::vector<double>> standard, ListLimits limits,
-                                std::string meaning) {
-    ParameterSpec spec{std::move(name), ParameterType::numbers, std::move(meaning)};
-    if (standard) spec.standard = std::move(*standard);
-    spec.count_least = spec.count_most = limits.count;
-    spec.least = limits.least;
-    spec.most = limits.most;
-    return spec;
+std::optional<ParameterValue> ParameterSpec::standard_value() const {
+    if (const double* number = std::get_if<double>(&standard)) return *number;
+    if (const bool* flag = std::get_if<bool>(&standard)) return *flag;
+    if (const auto* text = std::get_if<std::string_view>(&standard)) return std::string(*text);
+    return std::nullopt;
 }
 
 double Parameters::number(std::string_view name) const { return optional_number(name).value_or(0); }
@@ -256,20 +180,21 @@ tl::expected<ParameterValue, ParameterMistake> accept(const ParameterSpec& spec,
     return value;
 }
 
-CheckedParameters check_parameters(const std::vector<ParameterSpec>& specs,
+CheckedParameters check_parameters(std::span<const ParameterSpec> specs,
                                    const std::map<std::string, ParameterValue, std::less<>>& given) {
     CheckedParameters checked;
     std::map<std::string, ParameterValue, std::less<>> values;
     for (const ParameterSpec& spec : specs) {
         const auto value = given.find(spec.name);
+        const std::string name(spec.name);
         if (value == given.end()) {
-            if (spec.standard) values.emplace(spec.name, *spec.standard);
-            if (spec.needed) checked.mistakes.push_back({spec.name, "is missing; expected " + spec.meaning});
+            if (auto standard = spec.standard_value()) values.emplace(name, std::move(*standard));
+            if (spec.needed) checked.mistakes.push_back({name, fmt::format("is missing; expected {}", spec.meaning)});
             continue;
         }
         auto accepted = accept(spec, value->second);
         if (accepted)
-            values.emplace(spec.name, std::move(*accepted));
+            values.emplace(name, std::move(*accepted));
         else
             checked.mistakes.push_back(accepted.error());
     }

@@ -1,9 +1,12 @@
 /// What a fault or a command is told: named values, checked against a table that also makes the documentation.
 #pragma once
 
+#include <array>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -29,42 +32,119 @@ enum class ParameterType {
     numbers  ///< a list of numbers
 };
 
-/// One parameter: how it is called, with its unit, and what it takes.
+/// What a parameter is when it is not given; nothing: it is then no_standard. A list is always no_standard.
+using ParameterStandard = std::variant<std::monostate, double, bool, std::string_view>;
+
+/// One parameter: how it is called, with its unit, and what it takes. Its texts live as long as the program.
 struct ParameterSpec {
-    std::string name;
+    static constexpr double unlimited = std::numeric_limits<double>::max();
+    static constexpr std::size_t any_count = std::numeric_limits<std::size_t>::max();
+
+    std::string_view name{};
     ParameterType type = ParameterType::number;
-    std::string meaning;                       ///< for people, half a sentence
-    std::optional<ParameterValue> standard{};  ///< what it is when it is not given; nothing: it is then absent
-    bool needed = false;                       ///< it must be given
-    double least = -std::numeric_limits<double>::max(), most = std::numeric_limits<double>::max();  ///< of numbers
-    std::size_t count_least = 0, count_most = std::numeric_limits<std::size_t>::max();              ///< of lists
-    std::vector<std::string> choices{};  ///< of `word` and `words`
+    std::string_view meaning{};  ///< for people, half a sentence
+    ParameterStandard standard{};
+    bool needed = false;                                  ///< it must be given
+    double least = -unlimited, most = unlimited;          ///< of numbers
+    std::size_t count_least = 0, count_most = any_count;  ///< of lists
+    std::span<const std::string_view> choices{};          ///< of `word` and `words`
+
+    [[nodiscard]] std::optional<ParameterValue> standard_value() const;
+
+    /// The same, one that must be given.
+    [[nodiscard]] constexpr ParameterSpec that_is_needed() const {
+        ParameterSpec spec = *this;
+        spec.needed = true;
+        spec.standard = {};
+        return spec;
+    }
+    /// The same, no_standard unless given.
+    [[nodiscard]] constexpr ParameterSpec without_standard() const {
+        ParameterSpec spec = *this;
+        spec.standard = {};
+        return spec;
+    }
 };
 
-/// Tables of parameters are written with these. A number without `standard` is absent unless given.
-ParameterSpec number_parameter(std::string name, std::optional<double> standard, double least, double most,
-                               std::string meaning);
-ParameterSpec whole_number_parameter(std::string name, std::optional<double> standard, double least, double most,
-                                     std::string meaning);
-ParameterSpec needed_number(std::string name, double least, double most, std::string meaning);
-ParameterSpec needed_whole_number(std::string name, double least, double most, std::string meaning);
-ParameterSpec flag_parameter(std::string name, bool standard, std::string meaning);
-ParameterSpec word_parameter(std::string name, std::string standard, std::vector<std::string> choices,
-                             std::string meaning);
-ParameterSpec words_parameter(std::string name, std::vector<std::string> choices, std::string meaning);
-ParameterSpec text_parameter(std::string name, std::string standard, std::string meaning);
-ParameterSpec texts_parameter(std::string name, std::string meaning);
+/// A standard of none: the parameter is no_standard unless given.
+inline constexpr std::nullopt_t no_standard = std::nullopt;
+
+// Tables of parameters are written with these.
+constexpr ParameterSpec number_parameter(std::string_view name, std::optional<double> standard, double least,
+                                         double most, std::string_view meaning) {
+    ParameterSpec spec{.name = name, .meaning = meaning, .least = least, .most = most};
+    if (standard) spec.standard = *standard;
+    return spec;
+}
+constexpr ParameterSpec whole_number_parameter(std::string_view name, std::optional<double> standard, double least,
+                                               double most, std::string_view meaning) {
+    ParameterSpec spec = number_parameter(name, standard, least, most, meaning);
+    spec.type = ParameterType::whole_number;
+    return spec;
+}
+constexpr ParameterSpec needed_number(std::string_view name, double least, double most, std::string_view meaning) {
+    return number_parameter(name, no_standard, least, most, meaning).that_is_needed();
+}
+constexpr ParameterSpec flag_parameter(std::string_view name, bool standard, std::string_view meaning) {
+    return {.name = name, .type = ParameterType::flag, .meaning = meaning, .standard = standard};
+}
+constexpr ParameterSpec text_parameter(std::string_view name, std::string_view standard, std::string_view meaning) {
+    return {.name = name, .type = ParameterType::text, .meaning = meaning, .standard = standard};
+}
+constexpr ParameterSpec texts_parameter(std::string_view name, std::string_view meaning) {
+    return {.name = name, .type = ParameterType::texts, .meaning = meaning, .count_least = 1};
+}
+/// @param choices live as long as the program
+constexpr ParameterSpec word_parameter(std::string_view name, std::string_view standard,
+                                       std::span<const std::string_view> choices, std::string_view meaning) {
+    return {.name = name, .type = ParameterType::word, .meaning = meaning, .standard = standard, .choices = choices};
+}
+constexpr ParameterSpec words_parameter(std::string_view name, std::span<const std::string_view> choices,
+                                        std::string_view meaning) {
+    return {.name = name, .type = ParameterType::words, .meaning = meaning, .count_least = 1, .choices = choices};
+}
+/// A list of so many numbers.
+constexpr ParameterSpec numbers_parameter(std::string_view name, std::size_t count, double least, double most,
+                                          std::string_view meaning) {
+    return {.name = name,
+            .type = ParameterType::numbers,
+            .meaning = meaning,
+            .least = least,
+            .most = most,
+            .count_least = count,
+            .count_most = count};
+}
 /// [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid.
-ParameterSpec place_parameter(std::string name, bool needed, std::string meaning);
+constexpr ParameterSpec place_parameter(std::string_view name, std::string_view meaning) {
+    return {.name = name, .type = ParameterType::numbers, .meaning = meaning, .count_least = 2, .count_most = 3};
+}
 /// A list of at least three pairs of latitude and longitude, degrees, flat or pair by pair.
-ParameterSpec polygon_parameter(std::string name, std::string meaning);
-/// Which numbers a list takes.
-struct ListLimits {
-    std::size_t count = 2;  ///< exactly
-    double least = -std::numeric_limits<double>::max(), most = std::numeric_limits<double>::max();
+constexpr ParameterSpec polygon_parameter(std::string_view name, std::string_view meaning) {
+    return {
+        .name = name, .type = ParameterType::numbers, .meaning = meaning, .least = -360, .most = 360, .count_least = 6};
+}
+
+/// The parameters of one fault or command, as constant data.
+class ParameterList {
+public:
+    constexpr ParameterList(std::initializer_list<ParameterSpec> specs) {
+        for (const ParameterSpec& spec : specs)
+            specs_[count_++] = spec;
+    }
+    [[nodiscard]] constexpr const ParameterSpec* begin() const { return specs_.data(); }
+    [[nodiscard]] constexpr const ParameterSpec* end() const { return specs_.data() + count_; }
+    constexpr operator std::span<const ParameterSpec>() const { return {specs_.data(), count_}; }
+
+    friend constexpr ParameterList operator+(ParameterList first, const ParameterList& second) {
+        for (const ParameterSpec& spec : second)
+            first.specs_[first.count_++] = spec;
+        return first;
+    }
+
+private:
+    std::array<ParameterSpec, 16> specs_{};
+    std::size_t count_ = 0;
 };
-ParameterSpec numbers_parameter(std::string name, std::optional<std::vector<double>> standard, ListLimits limits,
-                                std::string meaning);
 
 /// Values that have been checked: every one that has a standard is there.
 ///
@@ -107,7 +187,7 @@ struct CheckedParameters {
     Parameters parameters;
     std::vector<ParameterMistake> mistakes;  ///< all of them; unknown names suggest the nearest known one
 };
-CheckedParameters check_parameters(const std::vector<ParameterSpec>& specs,
+CheckedParameters check_parameters(std::span<const ParameterSpec> specs,
                                    const std::map<std::string, ParameterValue, std::less<>>& given);
 
 }  // namespace skyloop

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -19,24 +20,24 @@ namespace {
 constexpr double farthest_m = 1e6;
 constexpr double fastest_error_mps = 1e4;
 
-ParameterSpec metres_parameter(std::string name, double standard, std::string meaning) {
-    return number_parameter(std::move(name), standard, -farthest_m, farthest_m, std::move(meaning));
-}
-
-// Its components have no standards: a north that nobody asked for beside an east that somebody did would be a surprise.
-std::vector<ParameterSpec> vector_parameters(std::string_view unit, double most, double north) {
-    const auto part = [&](std::string_view name, std::string meaning) {
-        return number_parameter(fmt::format("{}_{}", name, unit), std::nullopt, -most, most, std::move(meaning));
-    };
-    const std::string shown = unit == "mps" ? "m/s" : "m";
-    return {part("east", fmt::format("east of the truth, {}; 0 when it is not given", shown)),
-            part("north", fmt::format("north, {}; {:g} when none of the three is given, else 0", shown, north)),
-            part("up", fmt::format("up, {}; 0 when it is not given", shown))};
-}
-
 constexpr double usual_step_m = 50, usual_ramp_mps = 1, usual_velocity_bias_mps = 2;  // north
 
-std::vector<ParameterSpec> offset_parameters() { return vector_parameters("m", farthest_m, usual_step_m); }
+// Their components have no standards: a north that nobody asked for beside an east that somebody did would be a
+// surprise.
+constexpr ParameterSpec offset_part(std::string_view name, std::string_view meaning) {
+    return number_parameter(name, no_standard, -farthest_m, farthest_m, meaning);
+}
+constexpr ParameterSpec velocity_part(std::string_view name, std::string_view meaning) {
+    return number_parameter(name, no_standard, -fastest_error_mps, fastest_error_mps, meaning);
+}
+constexpr ParameterList offset_parameters{
+    offset_part("east_m", "east of the truth, m; 0 when it is not given"),
+    offset_part("north_m", "north, m; 50 when none of the three is given, else 0"),
+    offset_part("up_m", "up, m; 0 when it is not given")};
+constexpr ParameterList velocity_parameters(std::string_view north_meaning) {
+    return {velocity_part("east_mps", "east of the truth, m/s; 0 when it is not given"),
+            velocity_part("north_mps", north_meaning), velocity_part("up_mps", "up, m/s; 0 when it is not given")};
+}
 
 // An offset east, north, up.
 struct Offset {
@@ -185,73 +186,58 @@ Result<Fault> make_accuracy_scale(const Parameters& parameters, const FaultConte
     });
 }
 
-std::vector<ParameterSpec> ramp_parameters() {
-    std::vector<ParameterSpec> all = vector_parameters("mps", fastest_error_mps, usual_ramp_mps);
-    all.push_back(number_parameter("most_m", farthest_m, 0, farthest_m, "the error grows no more beyond this, m"));
-    all.push_back(flag_parameter("velocity_too", false, "the velocity tells of the ramp as well"));
-    return all;
+constexpr ParameterSpec spread(std::string_view name, double standard, std::string_view meaning) {
+    return number_parameter(name, standard, 0, farthest_m, meaning);
 }
 
-std::vector<ParameterSpec> good_dop_parameters() {
-    std::vector<ParameterSpec> all = offset_parameters();
-    all.push_back(number_parameter("hdop", 0.6, 0.1, 99, "HDOP that is told; the other DOPs follow"));
-    all.push_back(number_parameter("accuracy_m", 0.8, 0.001, farthest_m, "horizontal accuracy that is told, 1 σ, m"));
-    return all;
-}
+constexpr auto place_error_kinds = std::to_array<FaultKind>(
+    {{"position_step", "The position lies off by a constant vector, at once.",
+      "A change of the satellites in use, or of ambiguities or corrections.", offset_parameters, make_position_step},
+     {"position_ramp", "The position moves away from the true one at a constant speed.",
+      "A slow capture by false signals, or a clock or orbit that goes wrong.",
+      velocity_parameters("north, m/s; 1 when none of the three is given, else 0") +
+          ParameterList{number_parameter("most_m", farthest_m, 0, farthest_m, "the error grows no more beyond this, m"),
+                        flag_parameter("velocity_too", false, "the velocity tells of the ramp as well")},
+      make_position_ramp},
+     {"drift",
+      "The position walks away at random: its error grows with the square root of time.",
+      "A receiver that filters heavily while it has few satellites.",
+      {spread("horizontal_m_per_sqrt_s", 1, "1 σ of east and of north, m/√s"),
+       spread("vertical_m_per_sqrt_s", 1.5, "1 σ of the height, m/√s")},
+      make_drift},
+     {"wander",
+      "The position wanders around the true one: a Gauss-Markov process on each axis.",
+      "Multipath of a vehicle at rest, and what is left of the ionosphere.",
+      {spread("horizontal_m", 5, "1 σ of east and of north, m"), spread("vertical_m", 8, "1 σ of the height, m"),
+       number_parameter("correlation_time_s", 60, 0.01, 1e6, "after which it has forgotten itself, s")},
+      make_wander},
+     {"biased_good_dop", "The position lies off while DOP and accuracies say that all is well.",
+      "Reflected signals that agree with each other, or false ones: geometry knows nothing of them.",
+      offset_parameters +
+          ParameterList{
+              number_parameter("hdop", 0.6, 0.1, 99, "HDOP that is told; the other DOPs follow"),
+              number_parameter("accuracy_m", 0.8, 0.001, farthest_m, "horizontal accuracy that is told, 1 σ, m")},
+      make_biased_good_dop}});
 
-std::vector<ParameterSpec> spread_parameters(double horizontal, double vertical, const std::string& unit) {
-    return {number_parameter("horizontal_" + unit, horizontal, 0, farthest_m, "1 σ of east and of north, " + unit),
-            number_parameter("vertical_" + unit, vertical, 0, farthest_m, "1 σ of the height, " + unit)};
-}
-
-std::vector<ParameterSpec> wander_parameters() {
-    std::vector<ParameterSpec> all = spread_parameters(5, 8, "m");
-    all.push_back(number_parameter("correlation_time_s", 60, 0.01, 1e6, "after which it has forgotten itself, s"));
-    return all;
-}
-
-std::vector<FaultKind> place_error_kinds() {
-    using enum FaultLayer;
-    return {{"position_step", solution, "The position lies off by a constant vector, at once.",
-             "A change of the satellites in use, or of ambiguities or corrections.", offset_parameters(),
-             make_position_step},
-            {"position_ramp", solution, "The position moves away from the true one at a constant speed.",
-             "A slow capture by false signals, or a clock or orbit that goes wrong.", ramp_parameters(),
-             make_position_ramp},
-            {"drift", solution, "The position walks away at random: its error grows with the square root of time.",
-             "A receiver that filters heavily while it has few satellites.", spread_parameters(1, 1.5, "m_per_sqrt_s"),
-             make_drift},
-            {"wander", solution, "The position wanders around the true one: a Gauss-Markov process on each axis.",
-             "Multipath of a vehicle at rest, and what is left of the ionosphere.", wander_parameters(), make_wander},
-            {"biased_good_dop", solution, "The position lies off while DOP and accuracies say that all is well.",
-             "Reflected signals that agree with each other, or false ones: geometry knows nothing of them.",
-             good_dop_parameters(), make_biased_good_dop}};
-}
-
-std::vector<FaultKind> motion_and_quality_kinds() {
-    using enum FaultLayer;
-    return {
-        {"height_bias",
-         solution,
-         "The height lies off by a constant.",
-         "A wrong geoid or antenna height, or an ionosphere that is not modelled.",
-         {metres_parameter("height_m", 30, "above the true solution, m")},
-         make_height_bias},
-        {"velocity_bias", solution, "The velocity lies off by a constant vector; the position stays right.",
-         "Doppler shifts of reflected signals, or a filter tuned for another vehicle.",
-         vector_parameters("mps", fastest_error_mps, usual_velocity_bias_mps), make_velocity_bias},
-        {"accuracy_scale",
-         solution,
-         "The accuracies that the receiver tells of itself are too small, or too large.",
-         "Receivers estimate their accuracy from residuals, which reflected signals need not raise.",
-         {number_parameter("factor", 0.1, 0.001, 1000, "times the estimates; below 1 optimistic, above 1 pessimistic")},
-         make_accuracy_scale}};
-}
+constexpr auto motion_and_quality_kinds = std::to_array<FaultKind>(
+    {{"height_bias",
+      "The height lies off by a constant.",
+      "A wrong geoid or antenna height, or an ionosphere that is not modelled.",
+      {number_parameter("height_m", 30, -farthest_m, farthest_m, "above the true solution, m")},
+      make_height_bias},
+     {"velocity_bias", "The velocity lies off by a constant vector; the position stays right.",
+      "Doppler shifts of reflected signals, or a filter tuned for another vehicle.",
+      velocity_parameters("north, m/s; 2 when none of the three is given, else 0"), make_velocity_bias},
+     {"accuracy_scale",
+      "The accuracies that the receiver tells of itself are too small, or too large.",
+      "Receivers estimate their accuracy from residuals, which reflected signals need not raise.",
+      {number_parameter("factor", 0.1, 0.001, 1000, "times the estimates; below 1 optimistic, above 1 pessimistic")},
+      make_accuracy_scale}});
 
 }  // namespace
 
 std::vector<FaultKind> position_fault_kinds() {
-    return all_kinds_of({place_error_kinds, motion_and_quality_kinds, report_fault_kinds, epoch_fault_kinds});
+    return all_kinds_of(FaultLayer::solution, {place_error_kinds, motion_and_quality_kinds, report_fault_kinds()});
 }
 
 }  // namespace skyloop

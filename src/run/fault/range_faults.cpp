@@ -32,34 +32,14 @@ Result<Fault> offset_pseudoranges(const Parameters& parameters, Offset offset) {
     return fault;
 }
 
-FaultKind pseudorange_step() {
-    FaultKind kind;
-    kind.name = "pseudorange_step";
-    kind.effect = "Pseudoranges of some satellites are off by a constant; phase and Doppler shift are sound.";
-    kind.cause = "A channel that has locked to a side peak or a cross-correlation, a bad correction.";
-    kind.parameters = joined({needed_number("step_m", -1e7, 1e7, "m that the pseudorange is too long")},
-                             chosen_satellite_parameters());
-    kind.make = [](const Parameters& parameters, const FaultContext&) {
-        const double step = parameters.number("step_m");
-        return offset_pseudoranges(parameters, [step](double) { return step; });
-    };
-    kind.measuring_receivers_only = true;
-    return kind;
+Result<Fault> make_pseudorange_step(const Parameters& parameters, const FaultContext&) {
+    const double step = parameters.number("step_m");
+    return offset_pseudoranges(parameters, [step](double) { return step; });
 }
 
-FaultKind pseudorange_ramp() {
-    FaultKind kind;
-    kind.name = "pseudorange_ramp";
-    kind.effect = "Pseudoranges of some satellites drift away; phase and Doppler shift are sound.";
-    kind.cause = "Code that leaves the carrier in an ionospheric front, a code loop that is drawn off by an echo.";
-    kind.parameters = joined({needed_number("ramp_mps", -1000, 1000, "m/s by which the pseudorange grows too long")},
-                             chosen_satellite_parameters());
-    kind.make = [](const Parameters& parameters, const FaultContext&) {
-        const double ramp = parameters.number("ramp_mps");
-        return offset_pseudoranges(parameters, [ramp](double t) { return ramp * t; });
-    };
-    kind.measuring_receivers_only = true;
-    return kind;
+Result<Fault> make_pseudorange_ramp(const Parameters& parameters, const FaultContext&) {
+    const double ramp = parameters.number("ramp_mps");
+    return offset_pseudoranges(parameters, [ramp](double t) { return ramp * t; });
 }
 
 // Breaks the counts of cycles again and again; what they have lost is kept by the receiver, whose counts they are.
@@ -113,38 +93,38 @@ private:
     std::map<std::pair<SatelliteId, Signal>, RandomStream> numbers_;
 };
 
-std::vector<ParameterSpec> cycle_slip_parameters() {
-    std::vector<ParameterSpec> specs{number_parameter("slips_per_minute", 6, 0, 6000, "of each signal, on average"),
-                                     number_parameter("most_cycles", 10, 1, 1e6, "that one slip loses or wins"),
-                                     flag_parameter("flagged", true, "the receiver notices its slips and says so")};
-    // Of the selectors, those that do not need the sky.
-    for (ParameterSpec& spec : selector_parameters(true))
-        if (spec.name == "constellations" || spec.name == "satellites" || spec.name == "signals")
-            specs.push_back(std::move(spec));
-    return specs;
+Result<Fault> make_cycle_slips(const Parameters& parameters, const FaultContext& context) {
+    auto selector = read_selector(parameters);
+    if (!selector) return fail(selector.error());
+    Fault fault;
+    fault.observations = CycleSlips(parameters, context, std::move(*selector));
+    return fault;
 }
 
-FaultKind cycle_slips() {
-    FaultKind kind;
-    kind.name = "cycle_slips";
-    kind.effect =
-        "Carrier phases lose or win whole cycles at random, which breaks fixed ambiguities. The end of the fault "
-        "gives nothing back: a count stays off until its signal is tracked anew.";
-    kind.cause = "Vibration, shocks and foliage that the carrier loop does not bear, scintillation.";
-    kind.parameters = cycle_slip_parameters();
-    kind.make = [](const Parameters& parameters, const FaultContext& context) -> Result<Fault> {
-        auto selector = read_selector(parameters);
-        if (!selector) return fail(selector.error());
-        Fault fault;
-        fault.observations = CycleSlips(parameters, context, std::move(*selector));
-        return fault;
-    };
-    kind.measuring_receivers_only = true;
-    return kind;
-}
+constexpr auto range_kinds = std::to_array<FaultKind>({
+    {"pseudorange_step", "Pseudoranges of some satellites are off by a constant; phase and Doppler shift are sound.",
+     "A channel that has locked to a side peak or a cross-correlation, a bad correction.",
+     ParameterList{needed_number("step_m", -1e7, 1e7, "m that the pseudorange is too long")} + chosen_satellites,
+     make_pseudorange_step, of_measurements},
+    {"pseudorange_ramp", "Pseudoranges of some satellites drift away; phase and Doppler shift are sound.",
+     "Code that leaves the carrier in an ionospheric front, a code loop that is drawn off by an echo.",
+     ParameterList{needed_number("ramp_mps", -1000, 1000, "m/s by which the pseudorange grows too long")} +
+         chosen_satellites,
+     make_pseudorange_ramp, of_measurements},
+    {"cycle_slips",
+     "Carrier phases lose or win whole cycles at random, which breaks fixed ambiguities. The end of the fault "
+     "gives nothing back: a count stays off until its signal is tracked anew.",
+     "Vibration, shocks and foliage that the carrier loop does not bear, scintillation.",
+     {number_parameter("slips_per_minute", 6, 0, 6000, "of each signal, on average"),
+      number_parameter("most_cycles", 10, 1, 1e6, "that one slip loses or wins"),
+      flag_parameter("flagged", true, "the receiver notices its slips and says so"), constellations_parameter,
+      satellites_parameter, signals_parameter},
+     make_cycle_slips,
+     of_measurements},
+});
 
 }  // namespace
 
-std::vector<FaultKind> range_fault_kinds() { return {pseudorange_step(), pseudorange_ramp(), cycle_slips()}; }
+std::vector<FaultKind> range_fault_kinds() { return all_kinds_of(FaultLayer::signals, {range_kinds}); }
 
 }  // namespace skyloop

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "detail/catalogue_parts.hpp"
@@ -139,145 +140,112 @@ Result<Fault> make_clock_drift(const Parameters& parameters, const FaultContext&
     return fault;
 }
 
-ParameterSpec name_list(std::string name, std::string meaning) {
-    ParameterSpec spec = texts_parameter(std::move(name), std::move(meaning));
-    spec.needed = true;
-    return spec;
+constexpr ParameterSpec name_list(std::string_view name, std::string_view meaning) {
+    return texts_parameter(name, meaning).that_is_needed();
 }
 
-std::vector<FaultKind> silence_kinds() {
-    using enum FaultLayer;
-    return without_strength(
-        {{"receiver_silent",
-          receiver,
-          "The receiver sends nothing at all, and hears and navigates on.",
-          "Firmware that hangs or a transmit pin that is dead, in flight (betaflight #13946, #15685).",
-          {},
-          make_receiver_silent},
-         {"receiver_deaf",
-          receiver,
-          "The receiver hears nothing; its messages go on.",
-          "A receive line that is not connected, which naive clients notice at configuration only.",
-          {},
-          make_receiver_deaf},
-         {"never_answers",
-          receiver,
-          "The receiver executes what it hears, and answers nothing.",
-          "Clones that take commands and have no acknowledgements.",
-          {},
-          make_never_answers},
-         {"answers_selectively",
-          receiver,
-          "The receiver executes the named messages, and does not answer them.",
-          "Clones and old firmware that know a part of the protocol.",
-          {name_list("messages", "names of messages that stay unanswered: MON-VER, CFG-VALSET, UBX-0A-04")},
-          make_answers_selectively},
-         {"no_version",
-          receiver,
-          "MON-VER is never answered.",
-          "Clones, and receivers that are still busy when the client asks (betaflight #15676).",
-          {},
-          make_no_version},
-         {"withheld_messages",
-          receiver,
-          "The named messages are not sent with the epochs, whatever is configured.",
-          "A configuration that was lost in part, or a message that the firmware no longer has.",
-          {name_list("messages", "names of messages that are not sent: NAV-PVT, GGA")},
-          make_withheld_messages}});
+constexpr auto switched_kinds = without_strength(std::to_array<FaultKind>(
+    {{"receiver_silent",
+      "The receiver sends nothing at all, and hears and navigates on.",
+      "Firmware that hangs or a transmit pin that is dead, in flight (betaflight #13946, #15685).",
+      {},
+      make_receiver_silent},
+     {"receiver_deaf",
+      "The receiver hears nothing; its messages go on.",
+      "A receive line that is not connected, which naive clients notice at configuration only.",
+      {},
+      make_receiver_deaf},
+     {"never_answers",
+      "The receiver executes what it hears, and answers nothing.",
+      "Clones that take commands and have no acknowledgements.",
+      {},
+      make_never_answers},
+     {"answers_selectively",
+      "The receiver executes the named messages, and does not answer them.",
+      "Clones and old firmware that know a part of the protocol.",
+      {name_list("messages", "names of messages that stay unanswered: MON-VER, CFG-VALSET, UBX-0A-04")},
+      make_answers_selectively},
+     {"no_version",
+      "MON-VER is never answered.",
+      "Clones, and receivers that are still busy when the client asks (betaflight #15676).",
+      {},
+      make_no_version},
+     {"withheld_messages",
+      "The named messages are not sent with the epochs, whatever is configured.",
+      "A configuration that was lost in part, or a message that the firmware no longer has.",
+      {name_list("messages", "names of messages that are not sent: NAV-PVT, GGA")},
+      make_withheld_messages},
+     {"refuses_keys",
+      "CFG-VALSET with one of the named items is answered with ACK-NAK, and nothing of it is taken.",
+      "Items that a firmware does not have, sent together with those that it has.",
+      {name_list("keys", "names of configuration items: CFG-ITFM-ENABLE")},
+      make_refuses_keys},
+     {"refuses_messages",
+      "The named messages are answered with ACK-NAK and do nothing; sentences do nothing.",
+      "Old and new firmware that does not know each other's configuration messages.",
+      {name_list("messages", "names of messages that are refused: CFG-GNSS, CFG-VALSET")},
+      make_refuses_messages},
+     {"wrong_version",
+      "MON-VER tells another firmware.",
+      "Clones with borrowed version strings, and updates that a driver has never seen.",
+      {text_parameter("software", "", "swVersion, at most 30 characters; empty: as it is"),
+       texts_parameter("extensions", "the extension strings, at most 30 characters each; none: as they are")},
+      make_wrong_version},
+     {"jamming_flag_hidden",
+      "MON-HW and MON-RF say that interference is unknown; SEC-SIG alone tells it, on boards that have it.",
+      "F9 HPG 1.50 and later, on which drivers that read MON-RF see no jamming (PX4-GPSDrivers #231).",
+      {},
+      make_jamming_flag_hidden},
+     {"forgets_configuration",
+      "All settings are those of the factory, the speed among them, without a banner; it navigates on. "
+      "The end of the fault gives nothing back: the client has to.",
+      "A dip of the supply with an empty backup battery, in flight (betaflight, INAV #3908).",
+      {},
+      make_forgets_configuration},
+     {"reboots",
+      "The receiver starts anew, with what it has stored.",
+      "A dip of the supply, a watchdog, or a static discharge.",
+      {word_parameter("start", "hot", firmware::start_kind_names, "what it still knows"),
+       flag_parameter("banner", true, "it says who it is as it starts")},
+      make_reboots},
+     {"slow_cold_start",
+      "The receiver starts anew knowing nothing, and has no solution for long.",
+      "A first start in a new place, without a battery or with a poor sky.",
+      {number_parameter("without_fix_s", 120, 0, 1e6, "from the start without a solution, s")},
+      make_slow_cold_start},
+     {"changed_baud",
+      "The speed of the first UART is another one; at the end it is back, unless the client has set one since.",
+      "Settings that another client has stored, and drivers that trust what they set once (INAV #3908).",
+      {whole_number_parameter("baud", 9600, 300, 12e6, "speed, bit/s")},
+      make_changed_baud}}));
+
+constexpr ParameterSpec delay(double standard, std::string_view meaning) {
+    return number_parameter("delay_s", standard, 0, longest_delay_s, meaning);
 }
 
-std::vector<FaultKind> refusal_kinds() {
-    using enum FaultLayer;
-    return without_strength(
-        {{"refuses_keys",
-          receiver,
-          "CFG-VALSET with one of the named items is answered with ACK-NAK, and nothing of it is taken.",
-          "Items that a firmware does not have, sent together with those that it has.",
-          {name_list("keys", "names of configuration items: CFG-ITFM-ENABLE")},
-          make_refuses_keys},
-         {"refuses_messages",
-          receiver,
-          "The named messages are answered with ACK-NAK and do nothing; sentences do nothing.",
-          "Old and new firmware that does not know each other's configuration messages.",
-          {name_list("messages", "names of messages that are refused: CFG-GNSS, CFG-VALSET")},
-          make_refuses_messages},
-         {"wrong_version",
-          receiver,
-          "MON-VER tells another firmware.",
-          "Clones with borrowed version strings, and updates that a driver has never seen.",
-          {text_parameter("software", "", "swVersion, at most 30 characters; empty: as it is"),
-           texts_parameter("extensions", "the extension strings, at most 30 characters each; none: as they are")},
-          make_wrong_version},
-         {"jamming_flag_hidden",
-          receiver,
-          "MON-HW and MON-RF say that interference is unknown; SEC-SIG alone tells it, on boards that have it.",
-          "F9 HPG 1.50 and later, on which drivers that read MON-RF see no jamming (PX4-GPSDrivers #231).",
-          {},
-          make_jamming_flag_hidden}});
-}
-
-std::vector<FaultKind> restart_kinds() {
-    using enum FaultLayer;
-    return without_strength(
-        {{"forgets_configuration",
-          receiver,
-          "All settings are those of the factory, the speed among them, without a banner; it navigates on. "
-          "The end of the fault gives nothing back: the client has to.",
-          "A dip of the supply with an empty backup battery, in flight (betaflight, INAV #3908).",
-          {},
-          make_forgets_configuration},
-         {"reboots",
-          receiver,
-          "The receiver starts anew, with what it has stored.",
-          "A dip of the supply, a watchdog, or a static discharge.",
-          {word_parameter("start", "hot", {"cold", "warm", "hot"}, "what it still knows"),
-           flag_parameter("banner", true, "it says who it is as it starts")},
-          make_reboots},
-         {"slow_cold_start",
-          receiver,
-          "The receiver starts anew knowing nothing, and has no solution for long.",
-          "A first start in a new place, without a battery or with a poor sky.",
-          {number_parameter("without_fix_s", 120, 0, 1e6, "from the start without a solution, s")},
-          make_slow_cold_start},
-         {"changed_baud",
-          receiver,
-          "The speed of the first UART is another one; at the end it is back, unless the client has set one since.",
-          "Settings that another client has stored, and drivers that trust what they set once (INAV #3908).",
-          {whole_number_parameter("baud", 9600, 300, 12e6, "speed, bit/s")},
-          make_changed_baud}});
-}
-
-std::vector<FaultKind> slowness_kinds() {
-    using enum FaultLayer;
-    const auto delay = [](double standard, std::string meaning) {
-        return number_parameter("delay_s", standard, 0, longest_delay_s, std::move(meaning));
-    };
-    return {{"slow_answers",
-             receiver,
-             "Answers come later than usual; the receiver goes on working meanwhile.",
-             "A receiver that is busy with acquisition or with writing its flash.",
-             {delay(1.5, "more before each answer, s")},
-             make_slow_answers},
-            {"solution_latency",
-             receiver,
-             "Solutions leave the receiver later after their epoch.",
-             "Many signals at a high rate: the processor falls behind.",
-             {delay(0.2, "more from the epoch to the first byte, s"),
-              number_parameter("growth_s_per_s", 0, 0, 10, "growth of the delay, s per s of the fault")},
-             make_solution_latency},
-            {"clock_drift",
-             receiver,
-             "The receiver's clock, and with it the rate of its epochs, runs off the client's; all receivers of a run "
-             "have one clock. Seen in runs against the clock alone: virtual time has no other clock.",
-             "Crystals of flight controllers that are off by tens of ppm (ArduPilot #20566).",
-             {number_parameter("ppm", 100, -100'000, 100'000, "how much faster the receiver is, 1e-6")},
-             make_clock_drift}};
-}
+constexpr auto slowness_kinds = std::to_array<FaultKind>(
+    {{"slow_answers",
+      "Answers come later than usual; the receiver goes on working meanwhile.",
+      "A receiver that is busy with acquisition or with writing its flash.",
+      {delay(1.5, "more before each answer, s")},
+      make_slow_answers},
+     {"solution_latency",
+      "Solutions leave the receiver later after their epoch.",
+      "Many signals at a high rate: the processor falls behind.",
+      {delay(0.2, "more from the epoch to the first byte, s"),
+       number_parameter("growth_s_per_s", 0, 0, 10, "growth of the delay, s per s of the fault")},
+      make_solution_latency},
+     {"clock_drift",
+      "The receiver's clock, and with it the rate of its epochs, runs off the client's; all receivers of a run "
+      "have one clock. Seen in runs against the clock alone: virtual time has no other clock.",
+      "Crystals of flight controllers that are off by tens of ppm (ArduPilot #20566).",
+      {number_parameter("ppm", 100, -100'000, 100'000, "how much faster the receiver is, 1e-6")},
+      make_clock_drift}});
 
 }  // namespace
 
 std::vector<FaultKind> receiver_fault_kinds() {
-    return all_kinds_of({silence_kinds, refusal_kinds, restart_kinds, slowness_kinds});
+    return all_kinds_of(FaultLayer::receiver, {switched_kinds, slowness_kinds});
 }
 
 }  // namespace skyloop

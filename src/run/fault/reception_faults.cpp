@@ -48,18 +48,6 @@ Result<Fault> make_outage(const Parameters& parameters, const FaultContext&) {
     return fault;
 }
 
-FaultKind outage() {
-    FaultKind kind;
-    kind.name = "outage";
-    kind.effect = "The selected satellites or signals no longer arrive; ramped, they fade by up to 60 dB first.";
-    kind.cause =
-        "Tunnels, hangars, a hand or a battery over the antenna, a system that fails as Galileo did in July "
-        "2019.";
-    kind.parameters = selector_parameters(true);
-    kind.make = make_outage;
-    return kind;
-}
-
 Result<Fault> make_cn0_drop(const Parameters& parameters, const FaultContext&) {
     auto selector = read_selector(parameters);
     if (!selector) return fail(selector.error());
@@ -72,20 +60,8 @@ Result<Fault> make_cn0_drop(const Parameters& parameters, const FaultContext&) {
     return fault;
 }
 
-FaultKind cn0_drop() {
-    FaultKind kind;
-    kind.name = "cn0_drop";
-    kind.effect = "The selected signals arrive weaker by some dB.";
-    kind.cause =
-        "Water or ice on the antenna, a loose connector, banking that turns it away from a part of the sky, "
-        "a noisy camera or video transmitter beside it.";
-    kind.parameters =
-        joined({needed_number("attenuation_db", 0, 100, "dB that are taken off C/N0")}, selector_parameters(true));
-    kind.make = make_cn0_drop;
-    return kind;
-}
-
-Result<Fault> make_antenna_fault(const Parameters& parameters, AntennaStatus status) {
+template <AntennaStatus status>
+Result<Fault> make_antenna_fault(const Parameters& parameters, const FaultContext&) {
     Fault fault;
     fault.arrivals = [loss = parameters.optional_number("attenuation_db")](Arrivals& arrivals,
                                                                            const FaultMoment& moment) {
@@ -96,36 +72,39 @@ Result<Fault> make_antenna_fault(const Parameters& parameters, AntennaStatus sta
                 attenuate(arrival, {}, Decibels(loss.value_or(attenuation_before_silence.value())) * moment.strength);
         }
     };
-    fault.epoch = [status](Epoch& epoch, const FaultMoment&) { epoch.front_end.antenna = status; };
+    fault.epoch = [](Epoch& epoch, const FaultMoment&) { epoch.front_end.antenna = status; };
     return fault;
 }
 
-FaultKind antenna_fault(std::string name, AntennaStatus status, std::string effect, std::string cause) {
-    FaultKind kind;
-    kind.name = std::move(name);
-    kind.effect = std::move(effect);
-    kind.cause = std::move(cause);
-    kind.parameters = {number_parameter("attenuation_db", std::nullopt, 0, 100,
-                                        "dB by which signals still come in weaker; not given: none comes in")};
-    kind.make = [status](const Parameters& parameters, const FaultContext&) {
-        return make_antenna_fault(parameters, status);
-    };
-    return kind;
-}
+constexpr ParameterSpec coupling_parameter = number_parameter(
+    "attenuation_db", no_standard, 0, 100, "dB by which signals still come in weaker; not given: none comes in");
+
+constexpr auto reception_kinds = std::to_array<FaultKind>({
+    {"outage", "The selected satellites or signals no longer arrive; ramped, they fade by up to 60 dB first.",
+     "Tunnels, hangars, a hand or a battery over the antenna, a system that fails as Galileo did in July "
+     "2019.",
+     signal_selector, make_outage},
+    {"cn0_drop", "The selected signals arrive weaker by some dB.",
+     "Water or ice on the antenna, a loose connector, banking that turns it away from a part of the sky, "
+     "a noisy camera or video transmitter beside it.",
+     ParameterList{needed_number("attenuation_db", 0, 100, "dB that are taken off C/N0")} + signal_selector,
+     make_cn0_drop},
+    {"antenna_open",
+     "No satellite is heard and the antenna's supply is seen to be open.",
+     "A cable pulled in a crash, a connector that vibration has undone.",
+     {coupling_parameter},
+     make_antenna_fault<AntennaStatus::open>},
+    {"antenna_short",
+     "No satellite is heard and the antenna's supply is seen to be shorted.",
+     "A squeezed cable, water in a connector, a wrong antenna.",
+     {coupling_parameter},
+     make_antenna_fault<AntennaStatus::short_circuit>},
+});
 
 }  // namespace
 
 std::vector<FaultKind> reception_fault_kinds() {
-    return {outage(),
-            cn0_drop(),
-            antenna_fault("antenna_open", AntennaStatus::open,
-                          "No satellite is heard and the antenna's supply is seen to be open.",
-                          "A cable pulled in a crash, a connector that vibration has undone."),
-            antenna_fault("antenna_short", AntennaStatus::short_circuit,
-                          "No satellite is heard and the antenna's supply is seen to be shorted.",
-                          "A squeezed cable, water in a connector, a wrong antenna."),
-            jamming_fault_kind(),
-            multipath_burst_fault_kind()};
+    return all_kinds_of(FaultLayer::signals, {reception_kinds, {&jamming_fault, 1}, {&multipath_burst_fault, 1}});
 }
 
 }  // namespace skyloop

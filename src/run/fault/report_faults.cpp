@@ -6,6 +6,7 @@
 #include <array>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "detail/catalogue_parts.hpp"
@@ -16,16 +17,17 @@ namespace {
 
 using firmware::NavigationState;
 
+// All but the first and the last have a position.
 constexpr std::array all_fix_types{FixType::none,  FixType::dead_reckoning, FixType::fix_2d,    FixType::fix_3d,
                                    FixType::dgnss, FixType::rtk_float,      FixType::rtk_fixed, FixType::time_only};
 
-std::vector<std::string> fix_type_words(bool with_position_only) {
-    std::vector<std::string> words;
-    for (const FixType type : all_fix_types)
-        if (!with_position_only || (type != FixType::none && type != FixType::time_only))
-            words.emplace_back(fix_type_name(type));
+constexpr auto fix_type_words = [] {
+    std::array<std::string_view, all_fix_types.size()> words;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        words[i] = fix_type_name(all_fix_types[i]);
     return words;
-}
+}();
+constexpr std::span<const std::string_view> words_with_position(fix_type_words.data() + 1, fix_type_words.size() - 2);
 
 FixType fix_type_of(std::string_view word) {
     const auto* const found = std::find_if(all_fix_types.begin(), all_fix_types.end(),
@@ -217,105 +219,89 @@ Result<Fault> make_reordered_epochs(const Parameters& parameters, const FaultCon
                                             [delay](NavigationState& state) { state.report_delay += delay; }));
 }
 
-ParameterSpec epoch_share(double standard) { return number_parameter("probability", standard, 0, 1, "of each epoch"); }
-
-std::vector<ParameterSpec> rtk_parameters() {
-    const auto metres = [](std::string name, double standard, std::string meaning) {
-        return number_parameter(std::move(name), standard, -1000, 1000, std::move(meaning));
-    };
-    return {word_parameter("to", "rtk_float", fix_type_words(true), "type of the solution meanwhile"),
-            metres("east_m", 0.4, "step east, m"), metres("north_m", 0.3, "step north, m"),
-            metres("up_m", 0.6, "step up, m"),
-            number_parameter("accuracy_m", 0.3, 0.001, 1000, "horizontal accuracy that is told, 1 σ, m")};
+constexpr ParameterSpec epoch_share(double standard) {
+    return number_parameter("probability", standard, 0, 1, "of each epoch");
 }
 
-std::vector<FaultKind> untrue_report_kinds() {
-    using enum FaultLayer;
-    return without_strength(
-        {{"freeze",
-          solution,
-          "Position and velocity stay as they are while the time goes on.",
-          "Firmware that hangs in its navigation while its output goes on.",
-          {word_parameter("velocity", "kept", {"kept", "zero"}, "the velocity of before, or none")},
-          make_freeze},
-         {"stale_position",
-          solution,
-          "The last position is sent on with quality 0 and without the flag of a fix.",
-          "Receivers that keep their last place in view after the loss; naive drivers take it for a new one.",
-          {},
-          make_stale_position},
-         {"zero_position",
-          solution,
-          "Latitude and longitude are 0 while the flag of a fix is set.",
-          "Interference: receivers that report a fix before they have a place (ArduPilot #33142).",
-          {word_parameter("type", "3d", fix_type_words(true), "type of fix that is told")},
-          make_zero_position},
-         {"wrong_fix_type",
-          solution,
-          "The type of fix is told wrong, and with it what follows from it: satellites in use, the vector of a pair. "
-          "Position, velocity and accuracies stay.",
-          "Firmware that reckons on without satellites and says 3D, or drivers' mistakes with it.",
-          {word_parameter("type", "2d", fix_type_words(false), "type of fix that is told")},
-          make_wrong_fix_type}});
+constexpr ParameterSpec step_parameter(std::string_view name, double standard, std::string_view meaning) {
+    return number_parameter(name, standard, -1000, 1000, meaning);
 }
 
-std::vector<FaultKind> rtk_kinds() {
-    return {{"rtk_transition", FaultLayer::solution,
-             "The solution falls back to another type and steps with it, and back at the end.",
-             "Corrections that stop, or ambiguities that are lost: RTK fixed becomes float (PX4 #21555).",
-             rtk_parameters(), make_rtk_transition}};
-}
+constexpr std::string_view kept_velocities[] = {"kept", "zero"};
 
-std::vector<FaultKind> pair_and_count_kinds() {
-    using enum FaultLayer;
-    return without_strength(
-        {{"heading_lost",
-          solution,
-          "The vector between the antennas of a pair is gone.",
-          "One of the two antennas is shaded, or its corrections do not arrive.",
-          {},
-          make_heading_lost},
-         {"heading_flipped",
-          solution,
-          "The vector between the antennas of a pair points the other way.",
-          "Ambiguities fixed to wrong numbers on a short baseline, or antennas connected the wrong way round.",
-          {},
-          make_heading_flipped},
-         {"satellites_misreported",
-          solution,
-          "The number of satellites in use is told wrong.",
-          "Counts of signals instead of satellites, or of what is in view.",
-          {whole_number_parameter("count", 0, 0, 40, "how many are told")},
-          make_satellites_misreported}});
-}
+constexpr auto untrue_report_kinds = without_strength(std::to_array<FaultKind>(
+    {{"freeze",
+      "Position and velocity stay as they are while the time goes on.",
+      "Firmware that hangs in its navigation while its output goes on.",
+      {word_parameter("velocity", "kept", kept_velocities, "the velocity of before, or none")},
+      make_freeze},
+     {"stale_position",
+      "The last position is sent on with quality 0 and without the flag of a fix.",
+      "Receivers that keep their last place in view after the loss; naive drivers take it for a new one.",
+      {},
+      make_stale_position},
+     {"zero_position",
+      "Latitude and longitude are 0 while the flag of a fix is set.",
+      "Interference: receivers that report a fix before they have a place (ArduPilot #33142).",
+      {word_parameter("type", "3d", words_with_position, "type of fix that is told")},
+      make_zero_position},
+     {"wrong_fix_type",
+      "The type of fix is told wrong, and with it what follows from it: satellites in use, the vector of a pair. "
+      "Position, velocity and accuracies stay.",
+      "Firmware that reckons on without satellites and says 3D, or drivers' mistakes with it.",
+      {word_parameter("type", "2d", fix_type_words, "type of fix that is told")},
+      make_wrong_fix_type}}));
+
+constexpr auto rtk_kinds = std::to_array<FaultKind>(
+    {{"rtk_transition",
+      "The solution falls back to another type and steps with it, and back at the end.",
+      "Corrections that stop, or ambiguities that are lost: RTK fixed becomes float (PX4 #21555).",
+      {word_parameter("to", "rtk_float", words_with_position, "type of the solution meanwhile"),
+       step_parameter("east_m", 0.4, "step east, m"), step_parameter("north_m", 0.3, "step north, m"),
+       step_parameter("up_m", 0.6, "step up, m"),
+       number_parameter("accuracy_m", 0.3, 0.001, 1000, "horizontal accuracy that is told, 1 σ, m")},
+      make_rtk_transition}});
+
+constexpr auto pair_and_count_kinds = without_strength(std::to_array<FaultKind>(
+    {{"heading_lost",
+      "The vector between the antennas of a pair is gone.",
+      "One of the two antennas is shaded, or its corrections do not arrive.",
+      {},
+      make_heading_lost},
+     {"heading_flipped",
+      "The vector between the antennas of a pair points the other way.",
+      "Ambiguities fixed to wrong numbers on a short baseline, or antennas connected the wrong way round.",
+      {},
+      make_heading_flipped},
+     {"satellites_misreported",
+      "The number of satellites in use is told wrong.",
+      "Counts of signals instead of satellites, or of what is in view.",
+      {whole_number_parameter("count", 0, 0, 40, "how many are told")},
+      make_satellites_misreported}}));
+
+constexpr auto epoch_fault_kinds = std::to_array<FaultKind>(
+    {{"dropped_epochs",
+      "Epochs are missing: none of their messages is sent.",
+      "A receiver that cannot follow the rate that was asked of it.",
+      {epoch_share(0.3)},
+      make_dropped_epochs},
+     {"duplicated_epochs",
+      "Epochs are told twice, with the same time.",
+      "Bridges and hubs that repeat, and receivers with two outputs on one line.",
+      {epoch_share(1)},
+      make_duplicated_epochs},
+     {"reordered_epochs",
+      "Epochs come late, after younger ones.",
+      "Links over a network or a radio, and receivers under load.",
+      {epoch_share(0.3), number_parameter("delay_s", 0.3, 0.001, 3600,
+                                          "how much later, s; more than a period, or nothing is out of order")},
+      make_reordered_epochs}});
 
 }  // namespace
 
 std::vector<FaultKind> report_fault_kinds() {
-    return all_kinds_of({untrue_report_kinds, rtk_kinds, pair_and_count_kinds});
-}
-
-std::vector<FaultKind> epoch_fault_kinds() {
-    using enum FaultLayer;
-    return {{"dropped_epochs",
-             solution,
-             "Epochs are missing: none of their messages is sent.",
-             "A receiver that cannot follow the rate that was asked of it.",
-             {epoch_share(0.3)},
-             make_dropped_epochs},
-            {"duplicated_epochs",
-             solution,
-             "Epochs are told twice, with the same time.",
-             "Bridges and hubs that repeat, and receivers with two outputs on one line.",
-             {epoch_share(1)},
-             make_duplicated_epochs},
-            {"reordered_epochs",
-             solution,
-             "Epochs come late, after younger ones.",
-             "Links over a network or a radio, and receivers under load.",
-             {epoch_share(0.3), number_parameter("delay_s", 0.3, 0.001, 3600,
-                                                 "how much later, s; more than a period, or nothing is out of order")},
-             make_reordered_epochs}};
+    return all_kinds_of(FaultLayer::solution,
+                        {untrue_report_kinds, rtk_kinds, pair_and_count_kinds, epoch_fault_kinds});
 }
 
 }  // namespace skyloop

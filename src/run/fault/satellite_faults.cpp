@@ -34,38 +34,14 @@ Result<Fault> make_clock_fault(const Parameters& parameters, Ahead ahead) {
     return fault;
 }
 
-FaultKind satellite_clock_step() {
-    FaultKind kind;
-    kind.name = "satellite_clock_step";
-    kind.effect =
-        "The clock of a satellite jumps and its record does not tell: its range is off by the step, and the "
-        "carrier's count breaks.";
-    kind.cause = "A failing or exchanged atomic clock on board.";
-    kind.parameters = joined({needed_number("step_ns", -1e9, 1e9, "ns by which the clock jumps ahead; 1 ns is 0.3 m")},
-                             chosen_satellite_parameters());
-    kind.make = [](const Parameters& parameters, const FaultContext&) {
-        const double step = parameters.number("step_ns") * 1e-9;
-        return make_clock_fault(parameters, [step](double) { return step; });
-    };
-    kind.measuring_receivers_only = true;
-    return kind;
+Result<Fault> make_satellite_clock_step(const Parameters& parameters, const FaultContext&) {
+    const double step = parameters.number("step_ns") * 1e-9;
+    return make_clock_fault(parameters, [step](double) { return step; });
 }
 
-FaultKind satellite_clock_drift() {
-    FaultKind kind;
-    kind.name = "satellite_clock_drift";
-    kind.effect = "The clock of a satellite runs away from its record: its range error grows.";
-    kind.cause =
-        "A dying atomic clock, as that of GPS satellite SVN 23 on 2004-01-01, which led to hundreds of "
-        "kilometres of range error.";
-    kind.parameters = joined({needed_number("drift_ns_per_s", -1e6, 1e6, "ns that the clock gains each second")},
-                             chosen_satellite_parameters());
-    kind.make = [](const Parameters& parameters, const FaultContext&) {
-        const double drift = parameters.number("drift_ns_per_s") * 1e-9;
-        return make_clock_fault(parameters, [drift](double t) { return drift * t; });
-    };
-    kind.measuring_receivers_only = true;
-    return kind;
+Result<Fault> make_satellite_clock_drift(const Parameters& parameters, const FaultContext&) {
+    const double drift = parameters.number("drift_ns_per_s") * 1e-9;
+    return make_clock_fault(parameters, [drift](double t) { return drift * t; });
 }
 
 // How far a record is off at full growth, along the satellite's way in space, across it and outwards, m.
@@ -114,44 +90,15 @@ Result<Fault> make_wrong_ephemeris(const Parameters& parameters, const FaultCont
     return fault;
 }
 
-FaultKind wrong_ephemeris() {
-    FaultKind kind;
-    kind.name = "wrong_ephemeris";
-    kind.effect =
-        "The record that a satellite broadcasts puts it elsewhere: its range is off by what of that lies "
-        "along the line of sight.";
-    kind.cause =
-        "A bad upload, as to all of GLONASS on 2014-04-01, or a manoeuvre of a satellite that is still set "
-        "healthy.";
-    kind.parameters =
-        joined({number_parameter("along_track_m", std::nullopt, -1e6, 1e6, "m along the satellite's way"),
-                number_parameter("cross_track_m", std::nullopt, -1e6, 1e6, "m across it, along its angular momentum"),
-                number_parameter("radial_m", std::nullopt, -1e6, 1e6, "m away from the Earth"),
-                number_parameter("growth_s", 0, 0, 1e6, "s over which the error grows from nothing")},
-               chosen_satellite_parameters());
-    kind.make = make_wrong_ephemeris;
-    kind.measuring_receivers_only = true;
-    return kind;
-}
-
-FaultKind unhealthy() {
-    FaultKind kind;
-    kind.name = "unhealthy";
-    kind.effect = "Satellites send that they are not to be used; they are tracked and not used.";
-    kind.cause = "Maintenance, or a failure that the ground has seen: eight GLONASS satellites at once on 2014-04-14.";
-    kind.parameters = selector_parameters(false);
-    kind.make = [](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
-        auto selector = read_selector(parameters);
-        if (!selector) return fail(selector.error());
-        Fault fault;
-        fault.arrivals = [selector = std::move(*selector)](Arrivals& arrivals, const FaultMoment&) {
-            for (Arrival& arrival : arrivals.satellites)
-                if (selector.takes(arrival)) arrival.called_unhealthy = true;
-        };
-        return fault;
+Result<Fault> make_unhealthy(const Parameters& parameters, const FaultContext&) {
+    auto selector = read_selector(parameters);
+    if (!selector) return fail(selector.error());
+    Fault fault;
+    fault.arrivals = [selector = std::move(*selector)](Arrivals& arrivals, const FaultMoment&) {
+        for (Arrival& arrival : arrivals.satellites)
+            if (selector.takes(arrival)) arrival.called_unhealthy = true;
     };
-    kind.has_strength = false;
-    return kind;
+    return fault;
 }
 
 // Vertical delay at L1 beside what the day has, as a plane over the antenna, m.
@@ -185,73 +132,87 @@ void storm_over(Arrival& arrival, const StormFront& storm, const FaultMoment& mo
     if (wanted > Metres(0)) arrival.false_iono_rate += MetresPerSecond(moment.strength_rate * added);
 }
 
-FaultKind ionospheric_storm() {
-    FaultKind kind;
-    kind.name = "ionospheric_storm";
-    kind.effect =
-        "The ionosphere delays more than the receiver's broadcast correction knows: positions are off by "
-        "metres, heights most. On a ramp Doppler follows; without one all counts of cycles break.";
-    kind.cause = "Geomagnetic storms, as those of October 2003 and May 2024.";
-    kind.parameters = {
-        number_parameter("tec_factor", 1, 0, 20, "by which the day's electron content is multiplied"),
-        number_parameter("vertical_delay_m", 0, -50, 200, "m at L1 that are added overhead"),
-        number_parameter("gradient_mm_per_km", 0, 0, 1000, "mm at L1 by which that grows with each km over the ground"),
-        number_parameter("gradient_towards_deg", 0, -360, 360, "degrees from north, where it grows to")};
-    kind.make = [](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
-        const StormFront storm{parameters.number("tec_factor"), parameters.number("vertical_delay_m"),
-                               parameters.number("gradient_mm_per_km") / 1000,
-                               Angle::degrees(parameters.number("gradient_towards_deg"))};
-        if (storm.factor == 1 && storm.vertical == 0 && storm.gradient == 0)
-            return fail(ErrorCode::usage,
-                        "no storm is told; expected tec_factor, vertical_delay_m or gradient_mm_per_km");
-        Fault fault;
-        fault.arrivals = [storm](Arrivals& arrivals, const FaultMoment& moment) {
-            for (Arrival& arrival : arrivals.satellites)
-                storm_over(arrival, storm, moment);
-        };
-        return fault;
+Result<Fault> make_ionospheric_storm(const Parameters& parameters, const FaultContext&) {
+    const StormFront storm{parameters.number("tec_factor"), parameters.number("vertical_delay_m"),
+                           parameters.number("gradient_mm_per_km") / 1000,
+                           Angle::degrees(parameters.number("gradient_towards_deg"))};
+    if (storm.factor == 1 && storm.vertical == 0 && storm.gradient == 0)
+        return fail(ErrorCode::usage, "no storm is told; expected tec_factor, vertical_delay_m or gradient_mm_per_km");
+    Fault fault;
+    fault.arrivals = [storm](Arrivals& arrivals, const FaultMoment& moment) {
+        for (Arrival& arrival : arrivals.satellites)
+            storm_over(arrival, storm, moment);
     };
-    return kind;
+    return fault;
 }
 
-FaultKind scintillation() {
-    FaultKind kind;
-    kind.name = "scintillation";
-    kind.effect =
-        "Amplitude and phase of the selected signals flicker: C/N0 fades, ranges get noisy, cycles slip, and from "
-        "S4 of 0.71 on phases are lost.";
-    kind.cause = "Bubbles in the equatorial ionosphere after sunset, aurora.";
-    kind.parameters =
-        joined({number_parameter("s4", 0.6, 0, 1, "amplitude index at the first carrier"),
-                number_parameter("sigma_phi_rad", 0.3, 0, 3, "rad, 1 σ of the phase at the first carrier")},
-               selector_parameters(false));
-    kind.make = [](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
-        auto selector = read_selector(parameters);
-        if (!selector) return fail(selector.error());
-        Fault fault;
-        fault.arrivals = [selector = std::move(*selector), s4 = parameters.number("s4"),
-                          phase = parameters.number("sigma_phi_rad")](Arrivals& arrivals, const FaultMoment& moment) {
-            for (Arrival& arrival : arrivals.satellites) {
-                if (!selector.takes(arrival)) continue;
-                arrival.amplitude_scintillation = std::max(arrival.amplitude_scintillation, s4 * moment.strength);
-                arrival.phase_scintillation =
-                    std::max(arrival.phase_scintillation, Angle::radians(phase * moment.strength));
-            }
-        };
-        return fault;
+Result<Fault> make_scintillation(const Parameters& parameters, const FaultContext&) {
+    auto selector = read_selector(parameters);
+    if (!selector) return fail(selector.error());
+    Fault fault;
+    fault.arrivals = [selector = std::move(*selector), s4 = parameters.number("s4"),
+                      phase = parameters.number("sigma_phi_rad")](Arrivals& arrivals, const FaultMoment& moment) {
+        for (Arrival& arrival : arrivals.satellites) {
+            if (!selector.takes(arrival)) continue;
+            arrival.amplitude_scintillation = std::max(arrival.amplitude_scintillation, s4 * moment.strength);
+            arrival.phase_scintillation =
+                std::max(arrival.phase_scintillation, Angle::radians(phase * moment.strength));
+        }
     };
-    kind.measuring_receivers_only = true;
-    return kind;
+    return fault;
 }
+
+constexpr auto satellite_kinds = std::to_array<FaultKind>({
+    {"satellite_clock_step",
+     "The clock of a satellite jumps and its record does not tell: its range is off by the step, and the "
+     "carrier's count breaks.",
+     "A failing or exchanged atomic clock on board.",
+     ParameterList{needed_number("step_ns", -1e9, 1e9, "ns by which the clock jumps ahead; 1 ns is 0.3 m")} +
+         chosen_satellites,
+     make_satellite_clock_step, of_measurements},
+    {"satellite_clock_drift", "The clock of a satellite runs away from its record: its range error grows.",
+     "A dying atomic clock, as that of GPS satellite SVN 23 on 2004-01-01, which led to hundreds of "
+     "kilometres of range error.",
+     ParameterList{needed_number("drift_ns_per_s", -1e6, 1e6, "ns that the clock gains each second")} +
+         chosen_satellites,
+     make_satellite_clock_drift, of_measurements},
+    {"wrong_ephemeris",
+     "The record that a satellite broadcasts puts it elsewhere: its range is off by what of that lies "
+     "along the line of sight.",
+     "A bad upload, as to all of GLONASS on 2014-04-01, or a manoeuvre of a satellite that is still set "
+     "healthy.",
+     ParameterList{number_parameter("along_track_m", no_standard, -1e6, 1e6, "m along the satellite's way"),
+                   number_parameter("cross_track_m", no_standard, -1e6, 1e6, "m across it, along its angular momentum"),
+                   number_parameter("radial_m", no_standard, -1e6, 1e6, "m away from the Earth"),
+                   number_parameter("growth_s", 0, 0, 1e6, "s over which the error grows from nothing")} +
+         chosen_satellites,
+     make_wrong_ephemeris, of_measurements},
+    {"unhealthy", "Satellites send that they are not to be used; they are tracked and not used.",
+     "Maintenance, or a failure that the ground has seen: eight GLONASS satellites at once on 2014-04-14.",
+     satellite_selector, make_unhealthy, !of_measurements, !with_strength},
+    {"ionospheric_storm",
+     "The ionosphere delays more than the receiver's broadcast correction knows: positions are off by "
+     "metres, heights most. On a ramp Doppler follows; without one all counts of cycles break.",
+     "Geomagnetic storms, as those of October 2003 and May 2024.",
+     {number_parameter("tec_factor", 1, 0, 20, "by which the day's electron content is multiplied"),
+      number_parameter("vertical_delay_m", 0, -50, 200, "m at L1 that are added overhead"),
+      number_parameter("gradient_mm_per_km", 0, 0, 1000, "mm at L1 by which that grows with each km over the ground"),
+      number_parameter("gradient_towards_deg", 0, -360, 360, "degrees from north, where it grows to")},
+     make_ionospheric_storm},
+    {"scintillation",
+     "Amplitude and phase of the selected signals flicker: C/N0 fades, ranges get noisy, cycles slip, and from "
+     "S4 of 0.71 on phases are lost.",
+     "Bubbles in the equatorial ionosphere after sunset, aurora.",
+     ParameterList{number_parameter("s4", 0.6, 0, 1, "amplitude index at the first carrier"),
+                   number_parameter("sigma_phi_rad", 0.3, 0, 3, "rad, 1 σ of the phase at the first carrier")} +
+         satellite_selector,
+     make_scintillation, of_measurements},
+});
 
 }  // namespace
 
 std::vector<FaultKind> satellite_fault_kinds() {
-    std::vector<FaultKind> kinds{satellite_clock_step(), satellite_clock_drift(), wrong_ephemeris(), unhealthy(),
-                                 ionospheric_storm(),    scintillation()};
-    for (FaultKind& kind : range_fault_kinds())
-        kinds.push_back(std::move(kind));
-    return kinds;
+    return all_kinds_of(FaultLayer::signals, {satellite_kinds, range_fault_kinds()});
 }
 
 }  // namespace skyloop

@@ -12,15 +12,10 @@
 namespace skyloop {
 namespace {
 
-// As board and scenario files write them, in the order of Signal.
-constexpr std::array<std::string_view, 9> signal_words{"L1", "L2", "L5", "E5b", "E6", "B1I", "B3I", "G1", "G2"};
-
 template <class T>
 bool contains(const std::vector<T>& list, const T& item) {
     return std::find(list.begin(), list.end(), item) != list.end();
 }
-
-std::vector<std::string> words_of(std::span<const std::string_view> names) { return {names.begin(), names.end()}; }
 
 Result<std::vector<SatelliteId>> read_satellites(const Parameters& parameters) {
     std::vector<SatelliteId> satellites;
@@ -73,21 +68,6 @@ bool SignalSelector::takes(const Arrival& arrival) const {
 
 bool SignalSelector::takes(Signal signal) const { return signals.empty() || contains(signals, signal); }
 
-std::vector<ParameterSpec> selector_parameters(bool signals) {
-    std::vector<ParameterSpec> specs{
-        words_parameter("constellations", words_of(constellation_names), "systems that are hit; none given: all"),
-        texts_parameter("satellites", "satellites that are hit, as G07; none given: all"),
-        number_parameter("azimuth_from_deg", std::nullopt, -360, 360,
-                         "degrees clockwise from north, where a sector of the sky begins"),
-        number_parameter("azimuth_to_deg", std::nullopt, -360, 360, "degrees, where the sector ends, clockwise"),
-        number_parameter("elevation_from_deg", std::nullopt, -90, 90, "degrees, lower edge of a band of the sky"),
-        number_parameter("elevation_to_deg", std::nullopt, -90, 90, "degrees, upper edge of the band")};
-    if (signals)
-        specs.push_back(words_parameter("signals", words_of(signal_words),
-                                        "carriers that are hit; none given: all of a satellite"));
-    return specs;
-}
-
 Result<SignalSelector> read_selector(const Parameters& parameters) {
     SignalSelector selector;
     for (const std::string& name : parameters.texts("constellations"))
@@ -117,12 +97,6 @@ bool is_for(const Parameters& parameters, SatelliteId satellite, Signal signal) 
     if (selector->azimuth) arrival.direction.azimuth = (*selector->azimuth)[0];
     arrival.direction.elevation = selector->elevation[0];
     return selector->takes(arrival) && selector->takes(signal);
-}
-
-std::vector<ParameterSpec> chosen_satellite_parameters() {
-    return {texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start"),
-            whole_number_parameter("satellite_count", std::nullopt, 1, 200,
-                                   "how many of the highest ones; 1 when not given")};
 }
 
 Result<ChosenSatellites> ChosenSatellites::read(const Parameters& parameters) {
@@ -167,10 +141,5 @@ void ChosenSatellites::choose(const Observations& observations, const SkyView* s
 }
 
 bool ChosenSatellites::has(SatelliteId satellite) const { return contains(satellites_, satellite); }
-
-std::vector<ParameterSpec> joined(std::vector<ParameterSpec> first, std::vector<ParameterSpec> second) {
-    std::move(second.begin(), second.end(), std::back_inserter(first));
-    return first;
-}
 
 }  // namespace skyloop

@@ -51,9 +51,9 @@ void tell(Arrivals& arrivals, const FaultMoment& moment, const SignalSelector& s
     }
 }
 
-ParameterSpec advantage_parameter() {
-    return number_parameter("power_advantage_db", 3, 0, 40, "dB of the false signals over the true ones");
-}
+constexpr ParameterSpec advantage_parameter =
+    number_parameter("power_advantage_db", 3, 0, 40, "dB of the false signals over the true ones");
+constexpr std::string_view indications[] = {"indicated", "several"};
 
 // Drags the receiver away from the truth, or to a place.
 //
@@ -131,27 +131,6 @@ Result<Fault> make_takeover(const Parameters& parameters, const FaultContext&) {
     return fault;
 }
 
-FaultKind spoof_takeover() {
-    FaultKind kind;
-    kind.name = "spoof_takeover";
-    kind.effect =
-        "False signals begin in step with the true ones, are tracked in their place, and draw position and "
-        "time away smoothly, all ranges consistent.";
-    kind.cause = "A coordinated spoofer, as the University of Texas showed on a drone in 2012 and a yacht in 2013.";
-    kind.parameters = joined(
-        {place_parameter("to", false, "where the receiver shall believe to be in the end: degrees, metres"),
-         numbers_parameter("offset_m", std::nullopt, {3, -1e5, 1e5},
-                           "in its place, m from the truth: north, east, down"),
-         number_parameter("pull_off_mps", 2, 0.01, 1000, "m/s at which the position is drawn away, at most"),
-         number_parameter("aligned_s", 10, 0, 1e5, "s for which the false signals stay in step with the true ones"),
-         number_parameter("time_drift_ns_per_s", std::nullopt, -1e4, 1e4, "ns of time drawn away each second"),
-         advantage_parameter(), detected_after_parameter()},
-        selector_parameters(false));
-    kind.make = make_takeover;
-    kind.measuring_receivers_only = true;
-    return kind;
-}
-
 Result<Fault> make_meaconing(const Parameters& parameters, const FaultContext&) {
     auto selector = read_selector(parameters);
     if (!selector) return fail(selector.error());
@@ -184,24 +163,6 @@ Result<Fault> make_meaconing(const Parameters& parameters, const FaultContext&) 
     return fault;
 }
 
-FaultKind meaconing() {
-    FaultKind kind;
-    kind.name = "meaconing";
-    kind.effect =
-        "The receiver hears the sky of another antenna, delayed: it finds itself at that place, and its clock "
-        "is late.";
-    kind.cause = "A rebroadcast of real signals: repeaters in hangars and depots left on, or on purpose.";
-    kind.parameters =
-        joined({place_parameter("rebroadcast_at", false,
-                                "of the antenna whose sky is rebroadcast; not given: beside the receiver"),
-                number_parameter("delay_us", 1, 0, 10000, "µs of the repeater, beside the way through the air"),
-                advantage_parameter(), detected_after_parameter()},
-               selector_parameters(false));
-    kind.make = make_meaconing;
-    kind.measuring_receivers_only = true;
-    return kind;
-}
-
 Result<Fault> make_spoof_satellite(const Parameters& parameters, const FaultContext&) {
     auto chosen = ChosenSatellites::read(parameters);
     if (!chosen) return fail(chosen.error());
@@ -225,22 +186,6 @@ Result<Fault> make_spoof_satellite(const Parameters& parameters, const FaultCont
     return fault;
 }
 
-FaultKind spoof_satellite() {
-    FaultKind kind;
-    kind.name = "spoof_satellite";
-    kind.effect = "The range of one satellite, or a few, is false by a step, a ramp or both; the others are true.";
-    kind.cause =
-        "A clumsy or partial spoofer, a signal simulator that leaks; what receiver autonomous integrity "
-        "monitoring is for.";
-    kind.parameters = joined({number_parameter("step_m", std::nullopt, -1e6, 1e6, "m that the range is too long"),
-                              number_parameter("ramp_mps", std::nullopt, -1000, 1000, "m/s by which that grows"),
-                              advantage_parameter(), detected_after_parameter()},
-                             chosen_satellite_parameters());
-    kind.make = make_spoof_satellite;
-    kind.measuring_receivers_only = true;
-    return kind;
-}
-
 Result<Fault> make_spoof_flapping(const Parameters& parameters, const FaultContext&) {
     const double period = parameters.number("period_s"), duty = parameters.number("duty");
     const SpoofingIndication indication =
@@ -253,23 +198,52 @@ Result<Fault> make_spoof_flapping(const Parameters& parameters, const FaultConte
     return fault;
 }
 
-FaultKind spoof_flapping() {
-    FaultKind kind;
-    kind.name = "spoof_flapping";
-    kind.effect = "The receiver's spoofing indication comes and goes while nothing is wrong with the signals.";
-    kind.cause = "A detector at its threshold near reflecting roofs or a repeater (PX4 #21244).";
-    kind.parameters = {number_parameter("period_s", 4, 0.05, 3600, "s from one indication to the next"),
-                       number_parameter("duty", 0.5, 0.001, 0.999, "of the period, for which it indicates"),
-                       word_parameter("indication", "indicated", {"indicated", "several"}, "what it says")};
-    kind.make = make_spoof_flapping;
-    kind.has_strength = false;
-    return kind;
-}
+constexpr auto spoofing_kinds = std::to_array<FaultKind>({
+    {"spoof_takeover",
+     "False signals begin in step with the true ones, are tracked in their place, and draw position and "
+     "time away smoothly, all ranges consistent.",
+     "A coordinated spoofer, as the University of Texas showed on a drone in 2012 and a yacht in 2013.",
+     ParameterList{
+         place_parameter("to", "where the receiver shall believe to be in the end: degrees, metres"),
+         numbers_parameter("offset_m", 3, -1e5, 1e5, "in its place, m from the truth: north, east, down"),
+         number_parameter("pull_off_mps", 2, 0.01, 1000, "m/s at which the position is drawn away, at most"),
+         number_parameter("aligned_s", 10, 0, 1e5, "s for which the false signals stay in step with the true ones"),
+         number_parameter("time_drift_ns_per_s", no_standard, -1e4, 1e4, "ns of time drawn away each second"),
+         advantage_parameter, detected_after_parameter} +
+         satellite_selector,
+     make_takeover, of_measurements},
+    {"meaconing",
+     "The receiver hears the sky of another antenna, delayed: it finds itself at that place, and its clock "
+     "is late.",
+     "A rebroadcast of real signals: repeaters in hangars and depots left on, or on purpose.",
+     ParameterList{
+         place_parameter("rebroadcast_at", "of the antenna whose sky is rebroadcast; not given: beside the receiver"),
+         number_parameter("delay_us", 1, 0, 10000, "µs of the repeater, beside the way through the air"),
+         advantage_parameter, detected_after_parameter} +
+         satellite_selector,
+     make_meaconing, of_measurements},
+    {"spoof_satellite",
+     "The range of one satellite, or a few, is false by a step, a ramp or both; the others are true.",
+     "A clumsy or partial spoofer, a signal simulator that leaks; what receiver autonomous integrity "
+     "monitoring is for.",
+     ParameterList{number_parameter("step_m", no_standard, -1e6, 1e6, "m that the range is too long"),
+                   number_parameter("ramp_mps", no_standard, -1000, 1000, "m/s by which that grows"),
+                   advantage_parameter, detected_after_parameter} +
+         chosen_satellites,
+     make_spoof_satellite, of_measurements},
+    {"spoof_flapping",
+     "The receiver's spoofing indication comes and goes while nothing is wrong with the signals.",
+     "A detector at its threshold near reflecting roofs or a repeater (PX4 #21244).",
+     {number_parameter("period_s", 4, 0.05, 3600, "s from one indication to the next"),
+      number_parameter("duty", 0.5, 0.001, 0.999, "of the period, for which it indicates"),
+      word_parameter("indication", "indicated", indications, "what it says")},
+     make_spoof_flapping,
+     !of_measurements,
+     !with_strength},
+});
 
 }  // namespace
 
-std::vector<FaultKind> spoofing_fault_kinds() {
-    return {spoof_takeover(), meaconing(), spoof_satellite(), spoof_flapping()};
-}
+std::vector<FaultKind> spoofing_fault_kinds() { return all_kinds_of(FaultLayer::signals, {spoofing_kinds}); }
 
 }  // namespace skyloop

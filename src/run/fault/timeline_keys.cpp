@@ -18,20 +18,6 @@ constexpr double longest_s = 100 * 366.0 * 86400;  // a run's span stays far ins
 constexpr double most_occurrences = 1e6;
 constexpr double largest_custom_mode = 4294967295.0;
 
-// Neither true nor false when it is not given.
-ParameterSpec armed_parameter() {
-    ParameterSpec spec = flag_parameter("when_armed", true, "… when the vehicle is armed (true), or is not (false)");
-    spec.standard.reset();
-    return spec;
-}
-
-// Without a standard, so that an empty text can be told from none.
-ParameterSpec given_text(std::string name, std::string meaning) {
-    ParameterSpec spec = text_parameter(std::move(name), "", std::move(meaning));
-    spec.standard.reset();
-    return spec;
-}
-
 // What each of those texts names.
 constexpr std::pair<std::string_view, std::string_view> texts_that_name[] = {{"at_utc", "a time"},
                                                                              {"after", "the name of an entry"},
@@ -39,44 +25,38 @@ constexpr std::pair<std::string_view, std::string_view> texts_that_name[] = {{"a
                                                                              {"when_client_sends", "a message"},
                                                                              {"when_mavlink_mode", "a mode"}};
 
-std::vector<ParameterSpec> beginning_keys() {
-    const ListLimits bounds{2, 0, longest_s};
-    return {
-        text_parameter("name", "", "what messages and other entries call it; else its kind, with a number"),
-        number_parameter("at_s", std::nullopt, 0, longest_s, "when it begins, seconds after the start of the run"),
-        given_text("at_utc", "when it begins, ISO 8601, in UTC where no zone stands behind"),
-        numbers_parameter("between_s", std::nullopt, bounds, "it begins at a random time within these, by the seed"),
-        given_text("after", "the name of an entry from whose beginning its times count"),
-        given_text("after_end_of", "the name of a fault from whose end its times count"),
-        number_parameter("every_s", std::nullopt, 1e-3, longest_s, "it begins again after this"),
-        whole_number_parameter("times", std::nullopt, 1, most_occurrences,
-                               "how often by itself, in all; else without end"),
-        number_parameter("when_above_m", std::nullopt, -1e4, 1e8,
-                         "it begins when the antenna is higher than this above the ellipsoid"),
-        number_parameter("when_below_m", std::nullopt, -1e4, 1e8, "… lower than this"),
-        number_parameter("when_faster_mps", std::nullopt, 0, 1e5, "… faster than this over the ground"),
-        polygon_parameter("when_inside", "… inside this polygon, [[latitude, longitude], …]"),
-        number_parameter("when_fix_for_s", std::nullopt, 0, longest_s, "… when there has been a fix for so long"),
-        given_text("when_client_sends",
-                   "… when the client sends this message: \"CFG-VALSET\", \"CFG-*\" or \"anything\""),
-        given_text("when_mavlink_mode", "… when the vehicle's mode is this, by its name: \"AUTO\", \"RTL\""),
-        whole_number_parameter("when_custom_mode", std::nullopt, 0, largest_custom_mode,
-                               "… when it is this, by the number custom_mode of HEARTBEAT"),
-        armed_parameter(),
-        flag_parameter("again", false, "it begins each time that its condition comes true, not the first time alone"),
-    };
+// Without a standard, so that an empty text can be told from none.
+constexpr ParameterSpec given_text(std::string_view name, std::string_view meaning) {
+    return text_parameter(name, "", meaning).without_standard();
 }
 
-std::vector<ParameterSpec> fault_keys() {
-    std::vector<ParameterSpec> keys = beginning_keys();
-    const ListLimits bounds{2, 0, longest_s};
-    keys.push_back(number_parameter("for_s", std::nullopt, 0, longest_s, "how long it lasts; else to the end"));
-    keys.push_back(
-        numbers_parameter("for_between_s", std::nullopt, bounds, "it lasts a random time within these, by the seed"));
-    keys.push_back(number_parameter("ramp_in_s", 0, 0, longest_s, "it grows to its strength within this"));
-    keys.push_back(number_parameter("ramp_out_s", 0, 0, longest_s, "it fades within this after its end"));
-    return keys;
-}
+// The last ones are of faults alone.
+constexpr ParameterSpec keys_of_faults[] = {
+    text_parameter("name", "", "what messages and other entries call it; else its kind, with a number"),
+    number_parameter("at_s", no_standard, 0, longest_s, "when it begins, seconds after the start of the run"),
+    given_text("at_utc", "when it begins, ISO 8601, in UTC where no zone stands behind"),
+    numbers_parameter("between_s", 2, 0, longest_s, "it begins at a random time within these, by the seed"),
+    given_text("after", "the name of an entry from whose beginning its times count"),
+    given_text("after_end_of", "the name of a fault from whose end its times count"),
+    number_parameter("every_s", no_standard, 1e-3, longest_s, "it begins again after this"),
+    whole_number_parameter("times", no_standard, 1, most_occurrences, "how often by itself, in all; else without end"),
+    number_parameter("when_above_m", no_standard, -1e4, 1e8,
+                     "it begins when the antenna is higher than this above the ellipsoid"),
+    number_parameter("when_below_m", no_standard, -1e4, 1e8, "… lower than this"),
+    number_parameter("when_faster_mps", no_standard, 0, 1e5, "… faster than this over the ground"),
+    polygon_parameter("when_inside", "… inside this polygon, [[latitude, longitude], …]"),
+    number_parameter("when_fix_for_s", no_standard, 0, longest_s, "… when there has been a fix for so long"),
+    given_text("when_client_sends", "… when the client sends this message: \"CFG-VALSET\", \"CFG-*\" or \"anything\""),
+    given_text("when_mavlink_mode", "… when the vehicle's mode is this, by its name: \"AUTO\", \"RTL\""),
+    whole_number_parameter("when_custom_mode", no_standard, 0, largest_custom_mode,
+                           "… when it is this, by the number custom_mode of HEARTBEAT"),
+    flag_parameter("when_armed", true, "… when the vehicle is armed (true), or is not (false)").without_standard(),
+    flag_parameter("again", false, "it begins each time that its condition comes true, not the first time alone"),
+    number_parameter("for_s", no_standard, 0, longest_s, "how long it lasts; else to the end"),
+    numbers_parameter("for_between_s", 2, 0, longest_s, "it lasts a random time within these, by the seed"),
+    number_parameter("ramp_in_s", 0, 0, longest_s, "it grows to its strength within this"),
+    number_parameter("ramp_out_s", 0, 0, longest_s, "it fades within this after its end")};
+constexpr std::size_t count_of_faults_alone = 4;
 
 template <class Quantity>
 std::optional<Quantity> quantity(const Parameters& keys, std::string_view name) {
@@ -191,14 +171,10 @@ void refuse_contradictions(const Parameters& keys, const TimelineEntry& entry,
 
 }  // namespace
 
-const std::vector<ParameterSpec>& timeline_keys() {
-    static const std::vector<ParameterSpec> keys = fault_keys();
-    return keys;
-}
+std::span<const ParameterSpec> timeline_keys() { return keys_of_faults; }
 
-const std::vector<ParameterSpec>& timeline_keys_of_commands() {
-    static const std::vector<ParameterSpec> keys = beginning_keys();
-    return keys;
+std::span<const ParameterSpec> timeline_keys_of_commands() {
+    return timeline_keys().first(std::size(keys_of_faults) - count_of_faults_alone);
 }
 
 TimelineReading read_timeline_entry(const Parameters& keys) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,9 +14,9 @@
 namespace skyloop {
 
 /// Of faults; a command has those that timeline_keys_of_commands() gives.
-const std::vector<ParameterSpec>& timeline_keys();
+std::span<const ParameterSpec> timeline_keys();
 /// The same without length and ramps.
-const std::vector<ParameterSpec>& timeline_keys_of_commands();
+std::span<const ParameterSpec> timeline_keys_of_commands();
 
 /// An entry by its checked keys; its name is empty where none is given. Fails with every contradiction among them.
 struct TimelineReading {

@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "base/core/line_format.hpp"
@@ -12,17 +15,16 @@
 namespace skyloop {
 namespace {
 
-using MakeWireFault = std::function<Result<Fault>(const Parameters&, const FaultContext&)>;
 // Worsens one direction by a strength from 0 to 1.
 using WireWorsening = std::function<void(WireDirection&, const FaultMoment&)>;
 
 // Of two independent causes at least one strikes.
 void combine(double& probability, double with) { probability = 1 - (1 - probability) * (1 - with); }
 
-ParameterSpec wire_direction_parameter() {
-    return word_parameter("direction", "to_client", {"to_client", "to_receiver", "both"},
-                          "which bytes: those of the receiver to its client, those of the client, or both");
-}
+constexpr std::string_view wire_directions[] = {"to_client", "to_receiver", "both"};
+constexpr ParameterSpec wire_direction =
+    word_parameter("direction", "to_client", wire_directions,
+                   "which bytes: those of the receiver to its client, those of the client, or both");
 
 Fault worsened(const Parameters& parameters, WireWorsening worsen) {
     const std::string direction = parameters.text("direction");
@@ -36,14 +38,13 @@ Fault worsened(const Parameters& parameters, WireWorsening worsen) {
     return fault;
 }
 
-// A kind that raises one probability of a direction.
-MakeWireFault raise_probability(double WireDirection::*which) {
-    return [which](const Parameters& parameters, const FaultContext&) -> Result<Fault> {
-        return worsened(parameters, [which, p = parameters.number("probability")](WireDirection& direction,
-                                                                                  const FaultMoment& moment) {
-            combine(direction.*which, p * moment.strength);
-        });
-    };
+// Raises one probability of a direction.
+template <double WireDirection::*which>
+Result<Fault> raise_probability(const Parameters& parameters, const FaultContext&) {
+    return worsened(parameters,
+                    [p = parameters.number("probability")](WireDirection& direction, const FaultMoment& moment) {
+                        combine(direction.*which, p * moment.strength);
+                    });
 }
 
 Result<Fault> make_garbage(const Parameters& parameters, const FaultContext&) {
@@ -94,14 +95,13 @@ Result<Fault> make_dead(const Parameters& parameters, const FaultContext&) {
     return worsened(parameters, [](WireDirection& direction, const FaultMoment&) { direction.dead = true; });
 }
 
-MakeWireFault whole_wire(bool WireConditions::*which) {
-    return [which](const Parameters&, const FaultContext&) -> Result<Fault> {
-        Fault fault;
-        fault.wire = [which](WireConditions& wire, const FaultMoment& moment) {
-            if (moment.strength > 0) wire.*which = true;
-        };
-        return fault;
+template <bool WireConditions::*which>
+Result<Fault> whole_wire(const Parameters&, const FaultContext&) {
+    Fault fault;
+    fault.wire = [](WireConditions& wire, const FaultMoment& moment) {
+        if (moment.strength > 0) wire.*which = true;
     };
+    return fault;
 }
 
 Result<Fault> make_power_cut(const Parameters& parameters, const FaultContext&) {
@@ -129,143 +129,103 @@ Result<Fault> make_speed_mismatch(const Parameters& parameters, const FaultConte
     return fault;
 }
 
-FaultKind wire_kind(std::string name, std::string effect, std::string cause, std::vector<ParameterSpec> parameters,
-                    MakeWireFault make) {
-    FaultKind kind;
-    kind.name = std::move(name);
-    kind.layer = FaultLayer::wire;
-    kind.effect = std::move(effect);
-    kind.cause = std::move(cause);
-    kind.parameters = std::move(parameters);
-    kind.make = std::move(make);
-    return kind;
+constexpr ParameterList chance(double standard, std::string_view meaning) {
+    return {number_parameter("probability", standard, 0, 1, meaning), wire_direction};
 }
 
-std::vector<ParameterSpec> chance(double standard, std::string meaning) {
-    return {number_parameter("probability", standard, 0, 1, std::move(meaning)), wire_direction_parameter()};
-}
+constexpr auto gradual_wire_kinds = std::to_array<FaultKind>({
+    {"byte_loss", "Single bytes are missing.",
+     "A host that serves its UART's interrupt or DMA too late overruns the FIFO and loses bytes.",
+     chance(0.01, "of each byte to be lost"), raise_probability<&WireDirection::byte_loss>},
+    {"bit_flips", "Single bits arrive inverted.",
+     "Motor currents and speed controllers couple noise into long unshielded leads without a good ground.",
+     chance(0.001, "of each bit to be inverted"), raise_probability<&WireDirection::bit_errors>},
+    {"checksum_errors", "One bit of a message is inverted: the message stands, and its checksum fails.",
+     "A baud rate at the edge, a slow level shifter or rare interference spoils single bits.",
+     chance(0.1, "of each message to be spoilt"), raise_probability<&WireDirection::checksum_errors>},
+    {"truncated_messages", "The end of a message is missing.",
+     "A transmit buffer that is full drops the rest of what was to be sent.", chance(0.1, "of each message to be cut"),
+     raise_probability<&WireDirection::truncation>},
+    {"merged_messages", "The end of a message is missing, and so is the beginning of the next one.",
+     "A DMA ring buffer that is read too late is overwritten across the border of two messages.",
+     chance(0.1, "of each message to run into the next one"), raise_probability<&WireDirection::merging>},
+    {"inserted_garbage",
+     "Bursts of random bytes stand between messages.",
+     "A floating or noisy line makes start bits of its own; so does a second sender on it.",
+     {number_parameter("bursts_per_s", 1, 0, 1000, "how often, on average"),
+      whole_number_parameter("burst_bytes", 16, 1, 4096, "length of each burst, bytes"), wire_direction},
+     make_garbage},
+    {"wire_delay",
+     "Every byte comes late by the same time.",
+     "Radio links, CAN and network bridges buffer what they carry.",
+     {number_parameter("delay_s", 0.5, 0, 60, "by which bytes are late, s"), wire_direction},
+     make_delay},
+    {"wire_jitter",
+     "Messages come late by times that vary; none overtakes another.",
+     "Latency timers of USB bridges and a busy host's scheduler hold bytes for varying times.",
+     {number_parameter("sigma_s", 0.05, 0, 10,
+                       "standard deviation of each message's delay before it is cut at zero, s"),
+      wire_direction},
+     make_jitter},
+    {"stall",
+     "Again and again nothing comes for a while, and then all of it in one burst.",
+     "A host blocked by flash writes or logging, or a USB bus that sleeps, drains its buffer late.",
+     {number_parameter("hold_s", 1, 0, 600, "how long nothing comes, s"),
+      number_parameter("period_s", 5, 0.001, 3600, "from the start of a stall to the next one, s"), wire_direction},
+     make_stall},
+    {"duplicate_messages", "A message comes twice.",
+     "A telemetry radio or a network bridge repeats a packet whose acknowledgement was lost.",
+     chance(0.1, "of each message to come twice"), raise_probability<&WireDirection::duplication>},
+    {"reordered_messages", "A message comes after the one that followed it.",
+     "A bridge over UDP, or a driver with several queues, does not keep the order of its packets.",
+     chance(0.1, "of each message to change places with the next one"), raise_probability<&WireDirection::reordering>},
+    {"saturated_uart",
+     "Fewer bytes come through than are sent: the rest waits, the lag grows, and at last bytes are lost.",
+     "More messages are enabled, or at a higher rate, than the speed of the line can carry.",
+     {number_parameter("bytes_per_s", no_standard, 1, 1e7, "that come through; or give baud"),
+      number_parameter("baud", no_standard, 10, 1e8,
+                       "of a line that carries as much, ten bits a byte; 9600 when neither is given"),
+      wire_direction},
+     make_saturation},
+});
 
-void add_damaged_bytes(std::vector<FaultKind>& kinds) {
-    kinds.push_back(
-        wire_kind("byte_loss", "Single bytes are missing.",
-                  "A host that serves its UART's interrupt or DMA too late overruns the FIFO and loses bytes.",
-                  chance(0.01, "of each byte to be lost"), raise_probability(&WireDirection::byte_loss)));
-    kinds.push_back(
-        wire_kind("bit_flips", "Single bits arrive inverted.",
-                  "Motor currents and speed controllers couple noise into long unshielded leads without a good ground.",
-                  chance(0.001, "of each bit to be inverted"), raise_probability(&WireDirection::bit_errors)));
-    kinds.push_back(
-        wire_kind("checksum_errors", "One bit of a message is inverted: the message stands, and its checksum fails.",
-                  "A baud rate at the edge, a slow level shifter or rare interference spoils single bits.",
-                  chance(0.1, "of each message to be spoilt"), raise_probability(&WireDirection::checksum_errors)));
-}
-
-void add_damaged_messages(std::vector<FaultKind>& kinds) {
-    kinds.push_back(wire_kind("truncated_messages", "The end of a message is missing.",
-                              "A transmit buffer that is full drops the rest of what was to be sent.",
-                              chance(0.1, "of each message to be cut"), raise_probability(&WireDirection::truncation)));
-    kinds.push_back(
-        wire_kind("merged_messages", "The end of a message is missing, and so is the beginning of the next one.",
-                  "A DMA ring buffer that is read too late is overwritten across the border of two messages.",
-                  chance(0.1, "of each message to run into the next one"), raise_probability(&WireDirection::merging)));
-    kinds.push_back(wire_kind(
-        "inserted_garbage", "Bursts of random bytes stand between messages.",
-        "A floating or noisy line makes start bits of its own; so does a second sender on it.",
-        {number_parameter("bursts_per_s", 1, 0, 1000, "how often, on average"),
-         whole_number_parameter("burst_bytes", 16, 1, 4096, "length of each burst, bytes"), wire_direction_parameter()},
-        make_garbage));
-}
-
-void add_late_bytes(std::vector<FaultKind>& kinds) {
-    kinds.push_back(
-        wire_kind("wire_delay", "Every byte comes late by the same time.",
-                  "Radio links, CAN and network bridges buffer what they carry.",
-                  {number_parameter("delay_s", 0.5, 0, 60, "by which bytes are late, s"), wire_direction_parameter()},
-                  make_delay));
-    kinds.push_back(
-        wire_kind("wire_jitter", "Messages come late by times that vary; none overtakes another.",
-                  "Latency timers of USB bridges and a busy host's scheduler hold bytes for varying times.",
-                  {number_parameter("sigma_s", 0.05, 0, 10,
-                                    "standard deviation of each message's delay before it is cut at zero, s"),
-                   wire_direction_parameter()},
-                  make_jitter));
-    kinds.push_back(
-        wire_kind("stall", "Again and again nothing comes for a while, and then all of it in one burst.",
-                  "A host blocked by flash writes or logging, or a USB bus that sleeps, drains its buffer late.",
-                  {number_parameter("hold_s", 1, 0, 600, "how long nothing comes, s"),
-                   number_parameter("period_s", 5, 0.001, 3600, "from the start of a stall to the next one, s"),
-                   wire_direction_parameter()},
-                  make_stall));
-}
-
-void add_disorder(std::vector<FaultKind>& kinds) {
-    kinds.push_back(wire_kind("duplicate_messages", "A message comes twice.",
-                              "A telemetry radio or a network bridge repeats a packet whose acknowledgement was lost.",
-                              chance(0.1, "of each message to come twice"),
-                              raise_probability(&WireDirection::duplication)));
-    kinds.push_back(
-        wire_kind("reordered_messages", "A message comes after the one that followed it.",
-                  "A bridge over UDP, or a driver with several queues, does not keep the order of its packets.",
-                  chance(0.1, "of each message to change places with the next one"),
-                  raise_probability(&WireDirection::reordering)));
-    kinds.push_back(
-        wire_kind("saturated_uart",
-                  "Fewer bytes come through than are sent: the rest waits, the lag grows, and at last bytes are lost.",
-                  "More messages are enabled, or at a higher rate, than the speed of the line can carry.",
-                  {number_parameter("bytes_per_s", std::nullopt, 1, 1e7, "that come through; or give baud"),
-                   number_parameter("baud", std::nullopt, 10, 1e8,
-                                    "of a line that carries as much, ten bits a byte; 9600 when neither is given"),
-                   wire_direction_parameter()},
-                  make_saturation));
-}
-
-void add_broken_wires(std::vector<FaultKind>& kinds) {
-    kinds.push_back(wire_kind("line_break",
-                              "The line is held at space: its listener hears zero bytes with framing errors.",
-                              "A short to ground, or a sender whose output stays low without power.", {},
-                              whole_wire(&WireConditions::line_break)));
-    kinds.push_back(
-        wire_kind("unplugged",
-                  "Neither end hears the other, as with the cable pulled. What the receiver sends leaves it, and is in "
-                  "`port0.out` of a recording.",
-                  "Vibration works a connector loose, or a USB hub resets and its devices vanish for a while.", {},
-                  whole_wire(&WireConditions::unplugged)));
-    kinds.push_back(
-        wire_kind("power_cut",
-                  "The receiver is without power, and starts anew when it returns. In a live run its actuator, "
-                  "`power` of its [[receiver]], is switched too.",
-                  "A brown-out of the supply rail, a tripped fuse or a bad crimp of the supply lead.",
-                  {word_parameter("start", "cold", {"hot", "warm", "cold"},
-                                  "how it starts afterwards: cold without a backup battery, and "
-                                  "settings saved in battery-backed memory are lost then, those in flash are not")},
-                  make_power_cut));
-    kinds.push_back(wire_kind(
-        "speed_mismatch",
-        "The receiver's line runs at another speed than the one it was set to: a client that listens at that one "
-        "hears garble. `port0.out` of a recording has the bytes as they were sent.",
-        "A receiver that restarted unnoticed speaks at its default speed while its client does not.",
-        {whole_number_parameter("baud", 9600, 300, 4e6, "at which the receiver's line runs, bit/s")},
-        make_speed_mismatch));
-    kinds.push_back(
-        wire_kind("one_direction_dead", "One end hears nothing of the other, which still hears it.",
-                  "A bad crimp, a pin never wired or a level shifter of the wrong voltage cuts one lead.",
-                  {word_parameter("direction", "to_client", {"to_client", "to_receiver"}, "which bytes do not arrive")},
-                  make_dead));
-}
+constexpr auto switched_wire_kinds = without_strength(std::to_array<FaultKind>({
+    {"line_break",
+     "The line is held at space: its listener hears zero bytes with framing errors.",
+     "A short to ground, or a sender whose output stays low without power.",
+     {},
+     whole_wire<&WireConditions::line_break>},
+    {"unplugged",
+     "Neither end hears the other, as with the cable pulled. What the receiver sends leaves it, and is in "
+     "`port0.out` of a recording.",
+     "Vibration works a connector loose, or a USB hub resets and its devices vanish for a while.",
+     {},
+     whole_wire<&WireConditions::unplugged>},
+    {"power_cut",
+     "The receiver is without power, and starts anew when it returns. In a live run its actuator, "
+     "`power` of its [[receiver]], is switched too.",
+     "A brown-out of the supply rail, a tripped fuse or a bad crimp of the supply lead.",
+     {word_parameter("start", "cold", firmware::start_kind_names,
+                     "how it starts afterwards: cold without a backup battery, and "
+                     "settings saved in battery-backed memory are lost then, those in flash are not")},
+     make_power_cut},
+    {"speed_mismatch",
+     "The receiver's line runs at another speed than the one it was set to: a client that listens at that one "
+     "hears garble. `port0.out` of a recording has the bytes as they were sent.",
+     "A receiver that restarted unnoticed speaks at its default speed while its client does not.",
+     {whole_number_parameter("baud", 9600, 300, 4e6, "at which the receiver's line runs, bit/s")},
+     make_speed_mismatch},
+    {"one_direction_dead",
+     "One end hears nothing of the other, which still hears it.",
+     "A bad crimp, a pin never wired or a level shifter of the wrong voltage cuts one lead.",
+     {word_parameter("direction", "to_client", std::span(wire_directions).first(2), "which bytes do not arrive")},
+     make_dead},
+}));
 
 }  // namespace
 
 std::vector<FaultKind> wire_fault_kinds() {
-    std::vector<FaultKind> kinds;
-    add_damaged_bytes(kinds);
-    add_damaged_messages(kinds);
-    add_late_bytes(kinds);
-    add_disorder(kinds);
-    std::vector<FaultKind> broken;
-    add_broken_wires(broken);
-    for (FaultKind& kind : without_strength(std::move(broken)))
-        kinds.push_back(std::move(kind));
-    return kinds;
+    return all_kinds_of(FaultLayer::wire, {gradual_wire_kinds, switched_wire_kinds});
 }
 
 }  // namespace skyloop

@@ -67,16 +67,16 @@ KeyType key_type_of(const ParameterSpec& spec) {
 }
 
 KeyEntry entry_of(const ParameterSpec& spec) {
-    return {.name = spec.name,
+    return {.name = std::string(spec.name),
             .type = key_type_of(spec),
             .least = spec.least,
             .most = spec.most,
             .count_least = spec.count_least,
             .count_most = spec.count_most,
-            .choices = spec.choices,
-            .standard = spec.standard,
+            .choices = {spec.choices.begin(), spec.choices.end()},
+            .standard = spec.standard_value(),
             .needed = spec.needed,
-            .meaning = spec.meaning};
+            .meaning = std::string(spec.meaning)};
 }
 
 }  // namespace
@@ -180,7 +180,7 @@ void TableReader::not_both(std::string_view key, std::string_view other) {
         mistake(other, fmt::format("stands beside {}; expected one of the two", key));
 }
 
-void TableReader::note_parameters(const std::vector<ParameterSpec>& specs) {
+void TableReader::note_parameters(std::span<const ParameterSpec> specs) {
     if (!recording()) return;
     for (const ParameterSpec& spec : specs)
         note(spec.name, {}, entry_of(spec));

@@ -24,7 +24,7 @@ struct EntryMistakes {
 };
 
 template <class Kind>
-const Kind* read_kind(TableReader& table, KeyText text, const std::vector<Kind>& kinds) {
+const Kind* read_kind(TableReader& table, KeyText text, std::span<const Kind> kinds) {
     std::vector<std::string_view> names;
     for (const Kind& kind : kinds)
         names.push_back(kind.name);
@@ -45,7 +45,7 @@ const Kind* read_kind(TableReader& table, KeyText text, const std::vector<Kind>&
 struct GivenKeys {
     GivenValues timeline, own;
 };
-GivenKeys given_keys(TableReader& table, const std::vector<ParameterSpec>& timeline) {
+GivenKeys given_keys(TableReader& table, std::span<const ParameterSpec> timeline) {
     GivenKeys given;
     for (const std::string& key : table.keys()) {
         if (key == "kind" || key == "receiver") continue;
@@ -75,13 +75,13 @@ void tell_refusal(TableReader& table, const std::string& sentence) {
 }
 
 // Unknown keys suggest those of the timeline too.
-CheckedParameters own_parameters(TableReader& table, const std::vector<ParameterSpec>& own,
-                                 const std::vector<ParameterSpec>& timeline, const GivenValues& given) {
+CheckedParameters own_parameters(TableReader& table, std::span<const ParameterSpec> own,
+                                 std::span<const ParameterSpec> timeline, const GivenValues& given) {
     table.note_parameters(own);
     CheckedParameters checked = check_parameters(own, given);
     std::vector<std::string_view> known{"kind", "receiver"};
-    for (const auto* specs : {&own, &timeline})
-        for (const ParameterSpec& spec : *specs)
+    for (const auto specs : {own, timeline})
+        for (const ParameterSpec& spec : specs)
             known.push_back(spec.name);
     for (ParameterMistake& mistake : checked.mistakes)
         if (std::find(known.begin(), known.end(), mistake.name) == known.end())
@@ -90,7 +90,7 @@ CheckedParameters own_parameters(TableReader& table, const std::vector<Parameter
     return checked;
 }
 
-TimelineEntry read_times(TableReader& table, const std::vector<ParameterSpec>& keys, const GivenValues& given) {
+TimelineEntry read_times(TableReader& table, std::span<const ParameterSpec> keys, const GivenValues& given) {
     table.note_parameters(keys);
     const CheckedParameters checked = check_parameters(keys, given);
     tell(table, checked.mistakes);
@@ -103,7 +103,7 @@ TimelineEntry read_times(TableReader& table, const std::vector<ParameterSpec>& k
 }
 
 template <class Entry>
-void name_entry(TimelineEntry& entry, const std::string& kind, const std::vector<Entry>& others) {
+void name_entry(TimelineEntry& entry, std::string_view kind, const std::vector<Entry>& others) {
     if (!entry.name.empty()) return;
     std::vector<std::string> names;
     for (const Entry& other : others)
@@ -127,7 +127,7 @@ std::vector<std::size_t> read_receiver_choice(TableReader& table, const Scenario
 }
 
 void read_fault(TableReader& table, Scenario& scenario) {
-    const FaultKind* kind = read_kind(table, "which fault, see docs/faults.md", fault_kinds());
+    const FaultKind* kind = read_kind<FaultKind>(table, "which fault, see docs/faults.md", fault_kinds());
     FaultEntry entry;
     entry.told_at = table.told_at();
     entry.receivers = read_receiver_choice(table, scenario, "names of the receivers that it is for");
@@ -151,7 +151,7 @@ void read_fault(TableReader& table, Scenario& scenario) {
 }
 
 void read_command(TableReader& table, Scenario& scenario) {
-    const CommandKind* kind = read_kind(table, "which command, see docs/faults.md", command_kinds());
+    const CommandKind* kind = read_kind<CommandKind>(table, "which command, see docs/faults.md", command_kinds());
     CommandEntry entry;
     entry.told_at = table.told_at();
     const GivenKeys given = given_keys(table, timeline_keys_of_commands());
@@ -175,7 +175,7 @@ void read_command(TableReader& table, Scenario& scenario) {
         }
     }
     entry.command.source = "scenario";
-    name_entry(entry.when, kind != nullptr ? kind->name : "", scenario.commands);
+    name_entry(entry.when, kind != nullptr ? kind->name : std::string_view(), scenario.commands);
     scenario.commands.push_back(std::move(entry));
 }
 

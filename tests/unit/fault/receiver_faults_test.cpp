@@ -329,7 +329,7 @@ TEST(ReceiverFaults, RunsByAnotherClock) {
 
 // What every kind of these layers promises to those who document it.
 TEST(ReceiverFaults, KindsSayWhatTheyDoAndStandFor) {
-    std::set<std::string> names;
+    std::set<std::string_view> names;
     for (const FaultKind& kind : fault_kinds()) {
         EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
         EXPECT_TRUE(kind.effect.ends_with(".")) << kind.name;

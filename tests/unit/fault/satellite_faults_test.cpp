@@ -243,15 +243,15 @@ TEST(SatelliteFaults, ErrorsThatAreNotToldAreRefused) {
 
 // Each kind says what it does and why; what it makes leaves nothing behind it, for edits come from the fault alone.
 TEST(SignalFaultKinds, AreNamedAndExplained) {
-    std::set<std::string> names;
+    std::set<std::string_view> names;
     int count = 0;
     for (const FaultKind& kind : fault_kinds()) {
         if (kind.layer != FaultLayer::signals) continue;
         ++count;
         EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
         EXPECT_TRUE(kind.effect.ends_with('.') && kind.cause.ends_with('.')) << kind.name;
-        EXPECT_TRUE(kind.make) << kind.name;
-        std::set<std::string> parameters;
+        EXPECT_NE(kind.make, nullptr) << kind.name;
+        std::set<std::string_view> parameters;
         for (const ParameterSpec& spec : kind.parameters) {
             EXPECT_TRUE(parameters.insert(spec.name).second) << kind.name << "." << spec.name;
             EXPECT_FALSE(spec.meaning.empty()) << kind.name << "." << spec.name;

@@ -382,7 +382,7 @@ TEST(TimelineKeys, ContradictionsAreTold) {
 }
 
 TEST(TimelineKeys, NoFaultOrCommandHasAParameterOfTheirNames) {
-    std::set<std::string> taken{"kind", "receiver", "what"};
+    std::set<std::string_view> taken{"kind", "receiver", "what"};
     for (const ParameterSpec& spec : timeline_keys())
         taken.insert(spec.name);
     for (const FaultKind& kind : fault_kinds())
@@ -427,7 +427,7 @@ TEST(Parameters, AreWholeWhereHalvesMeanNothing) {
         {"changed_baud", "baud"},       {"leap_second_wrong", "error_s"}, {"satellites_misreported", "count"},
         {"week_rollover", "rollovers"}, {"speed_mismatch", "baud"},       {"inserted_garbage", "burst_bytes"}};
     for (const auto& [kind, name] : parameters) {
-        const std::vector<ParameterSpec>& specs = find_fault_kind(kind)->parameters;
+        const std::span<const ParameterSpec> specs = find_fault_kind(kind)->parameters;
         EXPECT_THAT(check_parameters(specs, {{name, 1.5}}).mistakes, SizeIs(1)) << kind;
         EXPECT_THAT(check_parameters(specs, {{name, 9600.0}}).mistakes.size() +
                         check_parameters(specs, {{name, 1.0}}).mistakes.size(),
@@ -437,12 +437,11 @@ TEST(Parameters, AreWholeWhereHalvesMeanNothing) {
 }
 
 TEST(Parameters, SayWhatIsWrongWithALongNumberOrAList) {
-    const auto said = [](const std::vector<ParameterSpec>& specs, const std::string& name,
-                         const ParameterValue& value) {
+    const auto said = [](std::span<const ParameterSpec> specs, const std::string& name, const ParameterValue& value) {
         const auto mistakes = check_parameters(specs, {{name, value}}).mistakes;
         return mistakes.empty() ? std::string() : mistakes[0].sentence;
     };
-    const std::vector<ParameterSpec>& loss = find_fault_kind("byte_loss")->parameters;
+    const std::span<const ParameterSpec> loss = find_fault_kind("byte_loss")->parameters;
     EXPECT_EQ(said(loss, "probability", 1.0000001), "is 1.0000001; expected a number from 0 to 1");
     EXPECT_EQ(said(loss, "probability", 2.5), "is 2.5; expected a number from 0 to 1");
     EXPECT_THAT(said(timeline_keys(), "between_s", std::vector<double>{5, NAN}),
@@ -452,7 +451,7 @@ TEST(Parameters, SayWhatIsWrongWithALongNumberOrAList) {
 }
 
 TEST(Parameters, AListNamesSomething) {
-    const std::vector<ParameterSpec>& outage = find_fault_kind("outage")->parameters;
+    const std::span<const ParameterSpec> outage = find_fault_kind("outage")->parameters;
     for (const ParameterValue& empty :
          {ParameterValue(std::vector<double>{}), ParameterValue(std::vector<std::string>{})})
         for (const char* name : {"satellites", "constellations", "signals"}) {

@@ -90,8 +90,8 @@ TEST(WireFaults, AreAllListedAndExplained) {
     std::vector<std::string> names;
     for (const FaultKind& kind : fault_kinds()) {
         if (kind.layer != FaultLayer::wire) continue;
-        names.push_back(kind.name);
-        for (const std::string& sentence : {kind.effect, kind.cause}) {
+        names.emplace_back(kind.name);
+        for (const std::string_view sentence : {kind.effect, kind.cause}) {
             EXPECT_GT(sentence.size(), 15U) << kind.name;
             EXPECT_EQ(sentence.back(), '.') << kind.name;
         }
@@ -207,7 +207,8 @@ TEST(WireFaults, WorkInTheDirectionTheyAreTold) {
         ASSERT_NE(kind, nullptr);
         for (const ParameterSpec& parameter : kind->parameters) {
             if (parameter.name != "direction") continue;
-            for (const std::string& direction : parameter.choices) {
+            for (const std::string_view choice : parameter.choices) {
+                const std::string direction(choice);
                 SCOPED_TRACE(name + " " + direction);
                 const WireConditions conditions = conditions_of(wire_fault(name, {{"direction", direction}}));
                 EXPECT_EQ(conditions.to_client != WireDirection{}, direction != "to_receiver");

@@ -34,7 +34,9 @@ inline bool knows_the_sky(const FaultMoment& moment, const Arrivals& arrivals) {
 }
 
 /// Seconds from the beginning of a fault until the receiver's own detector says that it is deceived.
-ParameterSpec detected_after_parameter();
+inline constexpr ParameterSpec detected_after_parameter =
+    number_parameter("detected_after_s", no_standard, 0, 1e6,
+                     "s from the start until the receiver's own detector indicates spoofing; not given: never");
 /// The edit that makes the detector say so; none when the parameter was not given.
 Edit<Epoch> detected_after(const Parameters& parameters);
 

@@ -1,25 +1,28 @@
 /// The kinds of each layer, which fault_kinds() puts in a row.
 #pragma once
 
+#include <array>
 #include <initializer_list>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "run/fault/fault_kind.hpp"
 
 namespace skyloop {
 
-/// The kinds that each of these gives, one list after the other.
-inline std::vector<FaultKind> all_kinds_of(std::initializer_list<std::vector<FaultKind> (*)()> parts) {
+/// The kinds of these tables, one table after the other, all of one layer.
+inline std::vector<FaultKind> all_kinds_of(FaultLayer layer, std::initializer_list<std::span<const FaultKind>> tables) {
     std::vector<FaultKind> all;
-    for (auto* const part : parts)
-        for (FaultKind& kind : part())
-            all.push_back(std::move(kind));
+    for (const auto table : tables)
+        all.insert(all.end(), table.begin(), table.end());
+    for (FaultKind& kind : all)
+        kind.layer = layer;
     return all;
 }
 
 /// The same kinds, as those that are there or are not.
-inline std::vector<FaultKind> without_strength(std::vector<FaultKind> kinds) {
+template <std::size_t n>
+constexpr std::array<FaultKind, n> without_strength(std::array<FaultKind, n> kinds) {
     for (FaultKind& kind : kinds)
         kind.has_strength = false;
     return kinds;

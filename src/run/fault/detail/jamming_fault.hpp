@@ -6,6 +6,6 @@
 namespace skyloop {
 
 /// "jamming": told by J/S at the antenna, or by where the jammer stands and how strong it is.
-FaultKind jamming_fault_kind();
+extern const FaultKind jamming_fault;
 
 }  // namespace skyloop

@@ -6,6 +6,6 @@
 namespace skyloop {
 
 /// "multipath_burst".
-FaultKind multipath_burst_fault_kind();
+extern const FaultKind multipath_burst_fault;
 
 }  // namespace skyloop

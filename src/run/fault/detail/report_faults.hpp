@@ -7,7 +7,7 @@
 
 namespace skyloop {
 
-std::vector<FaultKind> report_fault_kinds();  ///< of places, types of fix, headings, satellites
-std::vector<FaultKind> epoch_fault_kinds();   ///< of whole epochs: missing, twice, out of order
+/// Of places, types of fix, headings, satellites, and of whole epochs: missing, twice, out of order.
+std::vector<FaultKind> report_fault_kinds();
 
 }  // namespace skyloop

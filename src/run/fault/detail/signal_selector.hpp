@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/core/result.hpp"
@@ -25,20 +26,39 @@ struct SignalSelector {
     [[nodiscard]] bool by_signal() const { return !signals.empty(); }
 };
 
-/// `constellations`, `satellites` and the sector and band of the sky; with `signals` where a fault knows them apart.
-std::vector<ParameterSpec> selector_parameters(bool signals);
+inline constexpr ParameterSpec constellations_parameter =
+    words_parameter("constellations", constellation_names, "systems that are hit; none given: all");
+inline constexpr ParameterSpec satellites_parameter =
+    texts_parameter("satellites", "satellites that are hit, as G07; none given: all");
+/// As board and scenario files write them, in the order of Signal.
+inline constexpr std::array<std::string_view, 9> signal_words{"L1", "L2", "L5", "E5b", "E6", "B1I", "B3I", "G1", "G2"};
+inline constexpr ParameterSpec signals_parameter =
+    words_parameter("signals", signal_words, "carriers that are hit; none given: all of a satellite");
+/// Satellites, and the sector and band of the sky.
+inline constexpr ParameterList satellite_selector{
+    constellations_parameter,
+    satellites_parameter,
+    number_parameter("azimuth_from_deg", no_standard, -360, 360,
+                     "degrees clockwise from north, where a sector of the sky begins"),
+    number_parameter("azimuth_to_deg", no_standard, -360, 360, "degrees, where the sector ends, clockwise"),
+    number_parameter("elevation_from_deg", no_standard, -90, 90, "degrees, lower edge of a band of the sky"),
+    number_parameter("elevation_to_deg", no_standard, -90, 90, "degrees, upper edge of the band")};
+/// The same, of faults that know signals apart.
+inline constexpr ParameterList signal_selector = satellite_selector + ParameterList{signals_parameter};
 /// What these parameters say; fails with `usage` where they contradict each other.
 Result<SignalSelector> read_selector(const Parameters& parameters);
 
-/// `satellites`, and the number that is taken when none is named.
-std::vector<ParameterSpec> chosen_satellite_parameters();
+/// Satellites by name, and the number that is taken when none is named.
+inline constexpr ParameterList chosen_satellites{
+    texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start"),
+    whole_number_parameter("satellite_count", no_standard, 1, 200, "how many of the highest ones; 1 when not given")};
 
 /// Satellites that are named, or else the highest ones when the fault begins: a scenario need not know which are up.
 ///
 /// State: the choice, once it has been made.
 class ChosenSatellites {
 public:
-    /// From the parameters of chosen_satellite_parameters().
+    /// From the parameters `chosen_satellites`.
     static Result<ChosenSatellites> read(const Parameters& parameters);
     /// Chooses from those that arrive.
     void choose(const Arrivals& arrivals);
@@ -57,8 +77,5 @@ private:
     std::size_t count_ = 1;
     bool chosen_ = false;
 };
-
-/// The tables of two kinds of parameters in a row.
-std::vector<ParameterSpec> joined(std::vector<ParameterSpec> first, std::vector<ParameterSpec> second);
 
 }  // namespace skyloop

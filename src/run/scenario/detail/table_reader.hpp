@@ -230,7 +230,7 @@ public:
     /// Whether nothing is read, and the keys that are asked for are noted.
     [[nodiscard]] bool recording() const { return recorder_ != nullptr; }
     /// For the catalogue of keys: these are taken, as `value` gives them and check_parameters() checks them.
-    void note_parameters(const std::vector<ParameterSpec>& specs);
+    void note_parameters(std::span<const ParameterSpec> specs);
     /// For the catalogue of keys: the caller refuses the one beside the other.
     void note_not_both(std::string_view key, std::string_view other);
     /// For the catalogue of keys: `kind`, one of these words, decides what else the table takes.
