@@ -1,9 +1,9 @@
 #include "firmware/nmea_commands.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "base/core/number_in.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
 
@@ -41,19 +41,12 @@ CommandOutcome execute_sentence(const SentenceView& sentence, const BoardProfile
     return {};
 }
 
-std::optional<int> NumberedCommand::argument(std::size_t i) const { return whole_number(sentence.field(i)); }
+std::optional<int> NumberedCommand::argument(std::size_t i) const { return number_in<int>(sentence.field(i)); }
 
 void NumberedCommand::answer(const std::string& body) { outcome.answers.push_back(to_bytes(Sentence(body).finish())); }
 
 int least_fix_interval(const BoardProfile& board) {
     return std::max(board.least_measurement_period_ms, static_cast<int>(std::ceil(1000.0 / board.max_rate_hz - 1e-6)));
-}
-
-std::optional<int> whole_number(std::string_view field) {
-    int value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (field.empty() || error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-    return value;
 }
 
 std::vector<Bytes> version_answers(const BoardProfile& board, std::string_view prefix) {

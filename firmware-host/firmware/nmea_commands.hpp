@@ -65,7 +65,4 @@ std::vector<Bytes> version_answers(const BoardProfile& board, std::string_view p
 /// The shortest time between two fixes that the board can be asked for, ms.
 int least_fix_interval(const BoardProfile& board);
 
-/// The number in a field, with nothing after it.
-std::optional<int> whole_number(std::string_view field);
-
 }  // namespace skyloop::firmware

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 
+#include "base/core/number_in.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/nmea_commands.hpp"
@@ -180,7 +181,7 @@ constexpr PairRow pair_rows[] = {
 CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from) {
     constexpr std::string_view prefix = "PAIR";
     if (!sentence.address.starts_with(prefix)) return {};
-    const auto number = whole_number(sentence.address.substr(prefix.size()));
+    const auto number = number_in<int>(sentence.address.substr(prefix.size()));
     if (!number || *number < 0 || *number > 999) return {};
     PairCommand command{{sentence, board, store, from, *number}};
     const auto* row =

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
+#include "base/core/number_in.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/nmea_commands.hpp"
@@ -161,12 +161,9 @@ void set_constellations(PmtkCommand& c) {
 void set_speed_threshold(PmtkCommand& c) {
     constexpr double most = 2.0, per_step = 100.0;
     const std::string_view field = c.sentence.field(0);
-    double threshold = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), threshold);
-    if (field.empty() || error != std::errc() || end != field.data() + field.size() || !(threshold >= 0) ||
-        threshold > most)
-        return c.acknowledge(PmtkFlag::invalid);
-    c.store.set(pmtk_layers, key::mot_speed_threshold, static_cast<std::uint64_t>(std::llround(threshold * per_step)));
+    const auto threshold = number_in<double>(field);
+    if (!threshold || *threshold < 0 || *threshold > most) return c.acknowledge(PmtkFlag::invalid);
+    c.store.set(pmtk_layers, key::mot_speed_threshold, static_cast<std::uint64_t>(std::llround(*threshold * per_step)));
     c.acknowledge(PmtkFlag::done);
 }
 
@@ -214,7 +211,7 @@ CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& bo
         return command.outcome;
     }
     if (!sentence.address.starts_with(prefix)) return {};
-    const auto number = whole_number(sentence.address.substr(prefix.size()));
+    const auto number = number_in<int>(sentence.address.substr(prefix.size()));
     if (!number || *number < 0 || *number > 999) return {};
     command.number = *number;
     const auto* row =

@@ -1,9 +1,9 @@
 // PUBX 00, 03, 04, 40 and 41 and the standard polls (RECEIVER.md 5.7).
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <vector>
 
+#include "base/core/number_in.hpp"
 #include "firmware/board_messages.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/legacy_keys.hpp"
@@ -34,7 +34,7 @@ void set_pubx_rates(const SentenceView& sentence, const BoardProfile& board, Con
     if (sentence.fields.size() < first + fewest_ports) return;
     std::vector<int> rates;
     for (std::size_t at = first; at < std::min(first + port_count, sentence.fields.size()); ++at) {
-        const auto rate = whole_number(sentence.field(at));
+        const auto rate = number_in<int>(sentence.field(at));
         if (!rate || *rate < 0 || *rate > most) return;
         rates.push_back(*rate);
     }
@@ -44,11 +44,7 @@ void set_pubx_rates(const SentenceView& sentence, const BoardProfile& board, Con
 }
 
 std::optional<unsigned> hexadecimal_mask(std::string_view field) {
-    unsigned value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value, 16);
-    if (field.empty() || field.size() > 4 || error != std::errc() || end != field.data() + field.size())
-        return std::nullopt;
-    return value;
+    return field.size() <= 4 ? hexadecimal_number_in<unsigned>(field) : std::nullopt;
 }
 
 // The bits of CFG-PRT: 0 UBX, 1 NMEA, 5 RTCM3.
@@ -64,9 +60,9 @@ void set_pubx_protocols(ConfigStore& store, PortId port, unsigned mask, bool in)
 
 // PUBX,41,port,inProto,outProto,baud,autobaud: like CFG-PRT. What is not understood changes nothing.
 void set_port_by_pubx(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store) {
-    const auto number = whole_number(sentence.field(1));
+    const auto number = number_in<int>(sentence.field(1));
     const auto in = hexadecimal_mask(sentence.field(2)), out = hexadecimal_mask(sentence.field(3));
-    const auto baud = whole_number(sentence.field(4));
+    const auto baud = number_in<int>(sentence.field(4));
     if (!number || *number < 0 || *number >= static_cast<int>(port_count) || !in || !out) return;
     const auto port = static_cast<PortId>(*number);
     if (!pubx_port_exists(board, port)) return;
@@ -83,7 +79,7 @@ void set_port_by_pubx(const SentenceView& sentence, const BoardProfile& board, C
 
 // PUBX,00 and the like without more ask for that sentence.
 std::vector<UbxMessageId> asked_by_pubx(const SentenceView& sentence) {
-    const auto number = whole_number(sentence.field(0));
+    const auto number = number_in<int>(sentence.field(0));
     if (sentence.fields.size() != 1 || !number || (*number != 0 && *number != 3 && *number != 4)) return {};
     return {{class_pubx, static_cast<std::uint8_t>(*number)}};
 }

@@ -1,7 +1,7 @@
 // What faults make of a receiver.
 #include <algorithm>
-#include <charconv>
 
+#include "base/core/number_in.hpp"
 #include "base/core/overloaded.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/config_keys.hpp"
@@ -24,10 +24,8 @@ UbxMessageId sentence_id(const SentenceView& sentence) {
     }
     // PUBX,41 is F1-41: the digits are those of the id.
     const std::string_view digits = sentence.field(0);
-    UbxMessageId id{class_pubx, 0};
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), id.id, 16);
-    const bool whole = !digits.empty() && error == std::errc() && end == digits.data() + digits.size();
-    return whole ? id : UbxMessageId{};
+    const auto id = hexadecimal_number_in<std::uint8_t>(digits);
+    return id ? UbxMessageId{class_pubx, *id} : UbxMessageId{};
 }
 
 void Receiver::Core::happen(const ReceiverEvent& event, GpsTime now) {

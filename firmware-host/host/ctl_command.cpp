@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/core/number_in.hpp"
 #include "base/core/spelling.hpp"
 #include "commands.hpp"
 #include "messages.hpp"
@@ -40,17 +40,9 @@ constexpr std::string_view ctl_usage =
     "  end                           ends the run\n"
     "  any other of the commands, with KEY=VALUE…: set_baud baud=9600 receiver=front";
 
-std::optional<double> ctl_number(std::string_view text) {
-    double value = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole =
-        !text.empty() && read.ec == std::errc() && read.ptr == text.data() + text.size() && std::isfinite(value);
-    return whole ? std::optional(value) : std::nullopt;
-}
-
 CtlJson ctl_scalar(std::string_view text) {
     if (text == "true" || text == "false") return text == "true";
-    if (const auto number = ctl_number(text)) return *number;
+    if (const auto number = number_in<double>(text)) return *number;
     return text;
 }
 
@@ -108,7 +100,7 @@ Result<ControlRequest> command_post(CtlJson body, std::span<const std::string> p
 }
 
 Result<ControlRequest> number_post(const char* command, const char* key, const std::string& text) {
-    const auto number = ctl_number(text);
+    const auto number = number_in<double>(text);
     if (!number) return fail(ErrorCode::usage, fmt::format("{}: '{}' is no number", command, text));
     return ctl_post("/api/commands", {{"command", command}, {key, *number}});
 }

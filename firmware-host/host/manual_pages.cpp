@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/core/letter_case.hpp"
 #include "option_table.hpp"
 
 namespace skyloop::host {
@@ -136,12 +137,9 @@ std::string markdown_section(const CommandRow& command) {
 }  // namespace
 
 std::string manual_page(const CommandRow& command, std::string_view version) {
-    std::string upper = command.name;
-    std::transform(upper.begin(), upper.end(), upper.begin(),
-                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
     std::string page =
         fmt::format(".\\\" Written by skyloop help-pages.\n.TH SKYLOOP\\-{} 1 \"\" \"skyloop {}\" \"User Commands\"\n",
-                    roff_text(upper), version);
+                    roff_text(upper_case(command.name)), version);
     page += ".SH NAME\n" + fmt::format("skyloop\\-{} \\- {}\n", roff_text(command.name), roff_text(command.meaning));
     page += ".SH SYNOPSIS\n" + synopsis(command);
     for (const CommandRow& row : command.subcommands)

@@ -1,8 +1,8 @@
 #include "firmware/config/config_store.hpp"
 
 #include <array>
-#include <charconv>
 
+#include "base/core/number_in.hpp"
 #include "receiver/protocol/ubx_cfg_values.hpp"
 
 namespace skyloop::firmware {
@@ -40,9 +40,9 @@ tl::expected<StoredLine, std::string> parse_stored_line(std::string_view line, c
     if (key == nullptr || !holds(known, key->id))
         return tl::make_unexpected("'" + std::string(name) + "' is no configuration item of this receiver");
     StoredLine stored{layer == "flash", key->id, 0};
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), stored.value);
-    const bool whole = error == std::errc() && end == number.data() + number.size();
-    if (!whole || cut_to_size(key->id, stored.value) != stored.value)
+    const auto value = number_in<std::uint64_t>(number);
+    stored.value = value.value_or(0);
+    if (!value || cut_to_size(key->id, stored.value) != stored.value)
         return tl::make_unexpected(std::string(name) + " is '" + std::string(number) +
                                    "'; expected a whole number of " + std::to_string(config_value_size(key->id)) +
                                    " bytes");

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/core/number_in.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
@@ -272,7 +273,7 @@ void SeptentrioConsole::apply(ConfigStore& store) const {
                                  static_cast<std::uint64_t>(1000 / board_.max_rate_hz));
     store.set(in_ram, key::rate_meas, period);
     const auto mask = [&](const char* engine) {
-        return whole_number(settings.values("ElevationMask", engine).front()).value_or(-90);
+        return number_in<int>(settings.values("ElevationMask", engine).front()).value_or(-90);
     };
     store.set(in_ram, key::navspg_min_elev, static_cast<std::uint8_t>(std::max(mask("Tracking"), mask("PVT"))));
     apply_systems(store);
@@ -314,7 +315,7 @@ void SeptentrioConsole::apply_speeds(ConfigStore& store) const {
     const auto apply_speed = [&](std::string_view port, std::uint32_t item) {
         constexpr std::string_view prefix = "baud";
         const std::string& word = state_.settings.values("COMSettings", port).front();
-        if (const auto baud = whole_number(std::string_view(word).substr(prefix.size())))
+        if (const auto baud = number_in<int>(std::string_view(word).substr(prefix.size())))
             store.set(in_ram, item, static_cast<std::uint32_t>(*baud));
     };
     apply_speed("COM1", key::uart1_baudrate);
@@ -325,7 +326,7 @@ void SeptentrioConsole::apply_speeds(ConfigStore& store) const {
 void SeptentrioConsole::apply_station(ConfigStore& store) const {
     constexpr std::uint32_t station_item = 0x30090001;  // CFG-RTCM-DF003_OUT
     constexpr std::uint64_t moving = 0, fixed = 2;
-    const int station = whole_number(state_.settings.values("RTCMv3Formatting").front()).value_or(0);
+    const int station = number_in<int>(state_.settings.values("RTCMv3Formatting").front()).value_or(0);
     store.set(in_ram, station_item, static_cast<std::uint64_t>(station));
     const auto place = told_place(state_.settings);
     store.set(in_ram, key::tmode_mode, place ? fixed : moving);

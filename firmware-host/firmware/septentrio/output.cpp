@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "base/core/number_in.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/sbf_cartesian_messages.hpp"
@@ -226,7 +227,7 @@ void follow_epoch(SeptentrioState& receiver, const BoardProfile& board, const Na
 }
 
 std::vector<Bytes> septentrio_output(const SeptentrioState& receiver, const ReportContext& context) {
-    const auto mask = whole_number(receiver.settings.values("ElevationMask", "Tracking").front());
+    const auto mask = number_in<int>(receiver.settings.values("ElevationMask", "Tracking").front());
     const auto below = satellites_below(Angle::degrees(static_cast<double>(mask.value_or(-90))), context.state);
     if (below.empty()) return due_messages(receiver, context);
     const NavigationState above = without(below, context.state);

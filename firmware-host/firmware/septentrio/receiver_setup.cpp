@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/core/number_in.hpp"
 #include "firmware/nmea_commands.hpp"
 #include "firmware/septentrio/output.hpp"
 
@@ -23,7 +24,7 @@ float metres(const std::string& text) {
 }
 
 std::uint8_t index(const std::string& text) {
-    return static_cast<std::uint8_t>(std::clamp(whole_number(text).value_or(0), 0, 255));
+    return static_cast<std::uint8_t>(std::clamp(number_in<int>(text).value_or(0), 0, 255));
 }
 
 }  // namespace

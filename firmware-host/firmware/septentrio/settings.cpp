@@ -4,9 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 #include "firmware/nmea_commands.hpp"
 
 namespace skyloop::firmware {
@@ -17,7 +18,7 @@ std::string key_of(std::string_view name, std::string_view index) {
 }
 
 bool is_angle(std::string_view text) {
-    const auto degrees = whole_number(text);
+    const auto degrees = number_in<int>(text);
     return degrees && *degrees >= -90 && *degrees <= 90;
 }
 
@@ -47,9 +48,9 @@ const NumberRule* rule_of(std::string_view group, std::string_view argument) {
 
 // As it is told; nothing when it cannot be.
 std::optional<std::string> checked_number(const NumberRule& rule, std::string_view text) {
-    const auto value = decimal_number(text);
+    const auto value = number_in<double>(text);
     if (!value || !(*value >= rule.least && *value <= rule.most)) return std::nullopt;
-    if (rule.decimals == 0 && !whole_number(text)) return std::nullopt;
+    if (rule.decimals == 0 && !number_in<int>(text)) return std::nullopt;
     const double told = *value + 0.0;  // no zero with a minus
     return rule.decimals < 0 ? fmt::format("{}", told) : fmt::format("{:.{}f}", told, rule.decimals);
 }
@@ -118,8 +119,8 @@ constexpr SatelliteNumbers satellite_numbers[] = {{'G', 1, 32}, {'R', 1, 30}, {'
 
 std::optional<std::string> spelled_satellite(std::string word) {
     if (word.size() != 3 && word.size() != 4) return std::nullopt;
-    if (word.front() >= 'a' && word.front() <= 'z') word.front() = static_cast<char>(word.front() - 'a' + 'A');
-    const auto number = whole_number(std::string_view(word).substr(1));
+    word.front() = upper_case(word.front());
+    const auto number = number_in<int>(std::string_view(word).substr(1));
     const bool known = std::any_of(std::begin(satellite_numbers), std::end(satellite_numbers), [&](const auto& s) {
         return number && s.letter == word.front() && *number >= s.least && *number <= s.most;
     });
@@ -176,13 +177,6 @@ std::optional<std::string> merged_list(std::string_view group, std::string_view 
 }
 
 }  // namespace
-
-std::optional<double> decimal_number(std::string_view text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
 
 std::string wrong_argument(std::string_view command, std::initializer_list<std::string_view> names,
                            const std::vector<std::string>& arguments) {

@@ -44,9 +44,6 @@ private:
 std::string wrong_argument(std::string_view command, std::initializer_list<std::string_view> names,
                            const std::vector<std::string>& arguments);
 
-/// A number with or without decimals; nothing for what is none.
-std::optional<double> decimal_number(std::string_view text);
-
 /// Parts between separators, without spaces around them.
 std::vector<std::string> split_words(std::string_view text, char separator);
 

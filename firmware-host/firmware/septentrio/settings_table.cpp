@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 #include "firmware/nmea_commands.hpp"
 
 namespace skyloop::firmware {
@@ -206,7 +207,7 @@ std::string_view words_of(WordKind kind) {
 
 std::span<const SettingGroup> setting_groups() { return groups; }
 
-bool same_word(std::string_view a, std::string_view b) { return lowered_text(a) == lowered_text(b); }
+bool same_word(std::string_view a, std::string_view b) { return lower_case(a) == lower_case(b); }
 
 std::optional<std::string_view> known_word(WordKind kind, std::string_view word) {
     for (std::string_view rest = words_of(kind); !rest.empty();) {
@@ -229,7 +230,7 @@ std::optional<std::uint64_t> interval_ms(std::string_view interval) {
         {{"msec", 1}, {"sec", 1000}, {"min", 60'000}}};
     for (const auto& [unit, milliseconds] : units) {
         if (!interval.starts_with(unit)) continue;
-        const auto count = whole_number(interval.substr(unit.size()));
+        const auto count = number_in<int>(interval.substr(unit.size()));
         if (count && *count > 0) return static_cast<std::uint64_t>(*count) * milliseconds;
     }
     return std::nullopt;

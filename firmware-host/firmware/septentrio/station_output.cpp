@@ -6,6 +6,7 @@
 #include <numeric>
 #include <span>
 
+#include "base/core/number_in.hpp"
 #include "firmware/message_class.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
@@ -38,7 +39,7 @@ constexpr std::array station_messages{
 constexpr std::array<PortId, 3> ports_with_commands{PortId::uart1, PortId::uart2, PortId::usb};
 
 std::uint64_t period_of(const SeptentrioSettings& settings, const StationMessage& message) {
-    const auto seconds = decimal_number(settings.values("RTCMv3Interval", message.pace).front());
+    const auto seconds = number_in<double>(settings.values("RTCMv3Interval", message.pace).front());
     return static_cast<std::uint64_t>(std::llround(seconds.value_or(1) * 1e3));
 }
 
@@ -55,7 +56,7 @@ std::vector<const StationMessage*> sent_by(const SeptentrioSettings& settings, s
 // 1006 is 1005 and the height of the antenna's reference point above the marker.
 std::vector<Bytes> with_height(std::vector<Bytes> frames, const SeptentrioSettings& settings) {
     constexpr double most_m = 6.5535;
-    const double height = decimal_number(settings.values("AntennaOffset", "Main")[2]).value_or(0);
+    const double height = number_in<double>(settings.values("AntennaOffset", "Main")[2]).value_or(0);
     for (Bytes& frame : frames) {
         auto station = decode_station(*parse_rtcm3(frame));
         station->antenna_height = static_cast<int>(std::lround(std::clamp(height, 0.0, most_m) * 1e4));
@@ -106,7 +107,7 @@ std::optional<Position<Ecef>> told_place(const SeptentrioSettings& settings) {
     if (place.empty()) return std::nullopt;
     std::array<double, 3> numbers{};
     for (std::size_t i = 0; i < numbers.size(); ++i)
-        numbers[i] = decimal_number(place[i]).value_or(0);
+        numbers[i] = number_in<double>(place[i]).value_or(0);
     if (numbers == std::array<double, 3>{}) return std::nullopt;
     if (geodetic) return to_ecef(Geodetic::degrees(numbers[0], numbers[1], numbers[2]));
     return Position<Ecef>(numbers[0], numbers[1], numbers[2]);

@@ -12,7 +12,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "base/core/terminal_text.hpp"
 
 namespace skyloop {
@@ -145,7 +145,7 @@ Result<std::string> unpacked_at(int depth, std::string bytes, const std::string&
     if (!files) return fail(files.error());
     std::erase_if(*files, [](const auto& file) { return is_hidden_file(file.first); });
     if (std::any_of(files->begin(), files->end(),
-                    [](const auto& file) { return lowered_text(file.first).ends_with(".kml"); }))
+                    [](const auto& file) { return lower_case(file.first).ends_with(".kml"); }))
         return plain;
     if (files->size() != 1) {
         std::string names;

@@ -1,5 +1,5 @@
 #include "base/core/column_name.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 
 #include <algorithm>
 #include <array>
@@ -59,7 +59,7 @@ constexpr std::array column_units{ColumnUnit{"s", Unit::time, 1},
                                   ColumnUnit{"fps", Unit::speed, unit_foot}};
 
 std::string lowered_name(std::string_view text) {
-    std::string lower = lowered_text(text);
+    std::string lower = lower_case(text);
     for (char& letter : lower)
         if (letter == ' ' || letter == '-') letter = '_';
     return lower;

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <utility>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 
 namespace skyloop {
 namespace {
@@ -89,7 +89,7 @@ std::optional<double> sexagesimal_degrees(std::string_view text) {
 
 // Letters and digits alone, in lower case: "N/S", "N-S" and "n_s" are one name.
 std::string bare_name(std::string_view text) {
-    std::string bare = lowered_text(text);
+    std::string bare = lower_case(text);
     std::erase_if(bare, [](char c) { return !is_small_letter(c) && !(c >= '0' && c <= '9'); });
     return bare;
 }
@@ -123,7 +123,7 @@ std::string_view cell_of(const LineCells& cells, std::size_t column) {
 }  // namespace
 
 std::optional<double> hemisphere_sign(std::string_view text, Coordinate which) {
-    const std::string lower = lowered_text(text);
+    const std::string lower = lower_case(text);
     const auto* const found = std::find_if(hemispheres.begin(), hemispheres.end(), [&](const Hemisphere& one) {
         return one.which == which && (one.letter == lower || one.word == lower);
     });
@@ -131,7 +131,7 @@ std::optional<double> hemisphere_sign(std::string_view text, Coordinate which) {
 }
 
 std::optional<double> written_degrees(std::string_view text, Coordinate which) {
-    const std::string plain = with_plain_marks(lowered_text(text));
+    const std::string plain = with_plain_marks(lower_case(text));
     std::string_view rest = plain;
     drop_blanks(rest);
     std::optional<double> letter;
@@ -146,7 +146,7 @@ std::optional<double> written_degrees(std::string_view text, Coordinate which) {
 
 bool HemisphereColumns::is_of(Coordinate which, std::size_t column, const LineCells& cells) const {
     if (column == places_[0] || column == places_[1]) return false;
-    const std::string cell = lowered_text(cell_of(cells, column));
+    const std::string cell = lower_case(cell_of(cells, column));
     const std::size_t place = places_[static_cast<std::size_t>(which)];
     const bool beside = column == place + 1 || column + 1 == place;
     if (is_called_hemisphere(names_[column], which)) return is_letters(cell);
@@ -167,10 +167,9 @@ void HemisphereColumns::look_at_others(const LineCells& cells, std::size_t line)
         const std::string_view cell = cell_of(cells, column);
         Letters& letters = others_[column];
         if (cell.empty() || letters.others || column == columns_[0] || column == columns_[1]) continue;
-        const bool named =
-            bare_name(names_[column]).find("hemi") != std::string::npos && is_letters(lowered_text(cell));
+        const bool named = bare_name(names_[column]).find("hemi") != std::string::npos && is_letters(lower_case(cell));
         const auto* const found = std::find_if(hemispheres.begin(), hemispheres.end(), [&](const Hemisphere& one) {
-            return one.letter == lowered_text(cell) && one.letter != cell;  // in capitals
+            return one.letter == lower_case(cell) && one.letter != cell;  // in capitals
         });
         const bool letter = found != hemispheres.end() && letters.which.value_or(found->which) == found->which;
         letters.others = !letter && !named;

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 
+#include "base/core/number_in.hpp"
 #include "campaigns/campaign/campaign_folder.hpp"
 
 namespace skyloop {
@@ -15,11 +15,7 @@ namespace {
 // Of a longer list not every value costs an assembly.
 constexpr std::size_t most_values_assembled = 200;
 
-double number_of(const CampaignValue& value) {
-    double number = 0;
-    std::from_chars(value.toml.data(), value.toml.data() + value.toml.size(), number);
-    return number;
-}
+double number_of(const CampaignValue& value) { return number_in<double>(value.toml).value_or(0); }
 
 // Runs that have between them each value of the lists, and of each range the least and the greatest value.
 class RunsToAssemble {

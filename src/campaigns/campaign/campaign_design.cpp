@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "base/core/number_in.hpp"
 #include "base/core/overloaded.hpp"
 #include "base/core/random.hpp"
 
@@ -22,9 +22,7 @@ double normal_quantile(double u) { return -std::numbers::sqrt2 * boost::math::er
 
 CampaignValue rounded_value(double number) {
     const std::string text = fmt::format("{:.12g}", number);
-    double rounded = number;
-    std::from_chars(text.data(), text.data() + text.size(), rounded);
-    return campaign_value(rounded);
+    return campaign_value(number_in<double>(text).value_or(number));
 }
 
 double inside(double u) { return std::clamp(u, 1e-12, nearly_one); }

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <set>
 
+#include "base/core/number_in.hpp"
 #include "campaigns/campaign/campaign_design.hpp"
 #include "campaigns/campaign/sha256.hpp"
 
@@ -15,10 +15,8 @@ namespace {
 
 std::optional<std::uint64_t> whole_of(std::string_view text) {
     constexpr std::uint64_t most = 9007199254740992;  // 2^53, as in scenario files
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || text.empty() || value > most) return std::nullopt;
-    return value;
+    const auto value = number_in<std::uint64_t>(text);
+    return value && *value <= most ? value : std::nullopt;
 }
 
 Result<std::uint64_t> grid_points(const CampaignSettings& campaign) {

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
+#include "base/core/number_in.hpp"
 #include "detail/shown_text.hpp"
 #include "detail/sqlite_reader.hpp"
 
@@ -107,8 +107,9 @@ std::optional<Error> read_meta(const SqliteReader& reader, CampaignResults& resu
             std::uint64_t planned = count && *count >= 0 ? static_cast<std::uint64_t>(*count) : 0;
             bool good = count && *count >= 0;
             if (text) {
-                const auto [end, fault] = std::from_chars(text->data(), text->data() + text->size(), planned);
-                good = fault == std::errc() && end == text->data() + text->size();
+                const auto written = number_in<std::uint64_t>(*text);
+                good = written.has_value();
+                planned = written.value_or(0);
             }
             if (!good) return "planned is not a count of runs";
             results.planned = planned;

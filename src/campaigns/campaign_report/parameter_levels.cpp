@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
 
+#include "base/core/number_in.hpp"
 #include "detail/shown_text.hpp"
 
 namespace skyloop {
@@ -16,12 +16,8 @@ namespace {
 constexpr std::size_t longest_label = 32;
 
 std::optional<double> whole_number_text(const std::string& text) {
-    double number = 0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (fault != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    // Also false for what is not a number.
-    if (!(std::abs(number) <= largest_reported_number)) return std::nullopt;
-    return number;
+    const auto number = number_in<double>(text);
+    return number && std::abs(*number) <= largest_reported_number ? number : std::nullopt;
 }
 
 // The numbers of all runs, or nothing when a value is none.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <system_error>
 
 #include "base/core/make_folder.hpp"
+#include "base/core/number_in.hpp"
 #include "base/core/replace_file.hpp"
 
 namespace skyloop {
@@ -20,11 +20,9 @@ std::optional<int> number_in(const std::filesystem::path& file) {
     std::ifstream input(file, std::ios::binary);
     std::array<char, 16> bytes{};
     input.read(bytes.data(), bytes.size());
-    const char* const end = bytes.data() + input.gcount();
-    int number = 0;
-    const auto [rest, error] = std::from_chars(bytes.data(), end, number);
-    if (error != std::errc() || !(rest == end || (rest + 1 == end && *rest == '\n'))) return std::nullopt;
-    return number;
+    std::string_view text(bytes.data(), static_cast<std::size_t>(input.gcount()));
+    if (text.ends_with('\n')) text.remove_suffix(1);
+    return number_in<int>(text);
 }
 
 std::size_t ResultCounter::look() {

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <string_view>
 #include <thread>
 
 #include "base/core/make_folder.hpp"
+#include "base/core/number_in.hpp"
 #include "base/core/process.hpp"
 #include "base/core/text_file.hpp"
 #include "campaigns/engines/engine_files.hpp"
@@ -299,9 +299,9 @@ std::optional<SlurmJob> submitted_slurm(const EngineTask& task) {
     const std::size_t first = line.find(' '), second = line.find(' ', first == std::string::npos ? first : first + 1);
     if (second == std::string::npos) return std::nullopt;
     SlurmJob job{line.substr(0, first), line.substr(second + 1), 0};
-    const char* const end = line.data() + second;
-    const auto [rest, error] = std::from_chars(line.data() + first + 1, end, job.count);
-    const bool counted = error == std::errc() && rest == end && job.count >= 1 && job.count <= max_shards;
+    job.count =
+        number_in<decltype(job.count)>(std::string_view(line).substr(first + 1, second - first - 1)).value_or(0);
+    const bool counted = job.count >= 1 && job.count <= max_shards;
     if (!counted || !is_number(job.shards) || !(job.gather.empty() || is_number(job.gather))) return std::nullopt;
     return job;
 }

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/table_cells.hpp"
 
 namespace skyloop {
@@ -32,7 +32,7 @@ private:
 
 Result<Track> GnssLoggerReader::read() {
     while (table_.next()) {
-        const std::string kind = lowered_text(table_.cell(0));
+        const std::string kind = lower_case(table_.cell(0));
         if (kind == "# fix" || kind == "#fix") take_names();
         if (kind != "fix") continue;
         if (const auto taken = take_fix(); !taken) return fail(taken.error());
@@ -56,7 +56,7 @@ Result<Track> GnssLoggerReader::read() {
 void GnssLoggerReader::take_names() {
     names_.clear();
     for (const std::string_view cell : table_.cells())
-        names_.push_back(lowered_text(cell));
+        names_.push_back(lower_case(cell));
 }
 
 // The first column whose name begins so: "latitude" and "latitudedegrees" alike.
@@ -85,7 +85,7 @@ Result<void> GnssLoggerReader::take_fix() {
     row.ellipsoidal_m = *altitude;
     row.speed_mps = *speed;
     row.course_deg = *bearing;
-    const std::string provider = lowered_text(table_.cell(column("provider")));
+    const std::string provider = lower_case(table_.cell(column("provider")));
     const std::size_t which = provider == "gps" ? 0 : provider == "nlp" || provider == "network" ? 2 : 1;
     rows_[which].push_back(row);
     return {};

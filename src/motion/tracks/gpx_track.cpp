@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "base/core/written_place.hpp"
 #include "detail/text_track.hpp"
 #include "detail/xml_tree.hpp"
@@ -159,7 +159,7 @@ Result<void> GpxReader::take_place(const pugi::xml_node& point, TextRow& row) {
 Result<std::optional<double>> GpxReader::child_number(const pugi::xml_node& point, std::string_view name) {
     const std::string text = xml_content(xml_child(point, name));
     const std::string_view plain = trimmed_cell(text);
-    if (plain.empty() || lowered_text(plain) == "nan") return std::nullopt;
+    if (plain.empty() || lower_case(plain) == "nan") return std::nullopt;
     const auto number = text_number(plain);
     if (!number)
         return track_.refusal(tree_.line_of(point), fmt::format("{} is '{}'; expected metres with a decimal point",

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "base/core/archive.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/text_track.hpp"
 
 namespace skyloop {
@@ -14,7 +14,7 @@ Result<Track> read_kmz(const TrackFile& file) {
     // doc.kml, or the first that ends in .kml (OGC 07-147r2, annex C).
     std::string chosen;
     const auto is_kml = [&](std::string_view name) {
-        const std::string lower = lowered_text(name);
+        const std::string lower = lower_case(name);
         if (lower == "doc.kml" || (chosen.empty() && lower.ends_with(".kml"))) chosen = name;
         return lower.ends_with(".kml");
     };

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <functional>
 #include <utility>
 
 #include "base/core/column_name.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 #include "detail/table_cells.hpp"
 
 namespace skyloop {
@@ -179,13 +179,10 @@ bool is_unicsv_name(const std::string& text) {
 
 // Nanoseconds since 1980 of a whole count of POSIX nanoseconds, which a double cannot hold.
 std::optional<Nanoseconds> posix_nanoseconds(std::string_view text) {
-    std::int64_t count = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), count);
+    const auto count = number_in<std::int64_t>(text);
     constexpr std::int64_t second = 1'000'000'000;
-    if (status != std::errc() || end != text.data() + text.size() || count < gps_epoch_posix_s * second ||
-        count >= 7'258'118'400 * second)
-        return std::nullopt;
-    return from_posix(Nanoseconds(count), LeapSeconds::announced()).time_since_epoch();
+    if (!count || *count < gps_epoch_posix_s * second || *count >= 7'258'118'400 * second) return std::nullopt;
+    return from_posix(Nanoseconds(*count), LeapSeconds::announced()).time_since_epoch();
 }
 
 // The ground truth of EuRoC (its README): POSIX nanoseconds, place in a room, m, whose axes it takes z up; the columns
@@ -207,7 +204,7 @@ Result<void> take_euroc_row(TextTrack& track, TableCells& table) {
 bool euroc_names_tell_places(std::string_view names) {
     std::vector<std::string_view> cells;
     split_table_line(names, ',', cells);
-    const std::string second = cells.size() > 1 ? lowered_text(trimmed_cell(cells[1])) : std::string();
+    const std::string second = cells.size() > 1 ? lower_case(trimmed_cell(cells[1])) : std::string();
     return second.starts_with("p_rs_r_x") || second == "x" || second.starts_with("x [");
 }
 
@@ -218,7 +215,7 @@ std::string_view euroc_names(std::string_view text) {
     TextLines lines(text.substr(0, looked_at));
     while (lines.next()) {
         const std::string_view line = trimmed_cell(lines.line());
-        const std::string lowered = lowered_text(line.substr(0, 20));
+        const std::string lowered = lower_case(line.substr(0, 20));
         if (lowered.starts_with("#timestamp [ns],") ||
             (lowered.starts_with("#timestamp,") && euroc_names_tell_places(line)))
             return line;
@@ -234,7 +231,7 @@ Result<Track> read_rows(const TrackFile& file, TextTrack& track, const RowTaker&
     bool named = false;
     while (table.next()) {
         if (!named) {
-            named = lowered_text(trimmed_cell(table.text())).starts_with(lowered_text(names_begin));
+            named = lower_case(trimmed_cell(table.text())).starts_with(lower_case(names_begin));
             if (named) table.take_names();
             continue;
         }
@@ -284,7 +281,7 @@ std::string_view unicsv_names(std::string_view head) {
         std::size_t found = 0;
         for (const std::string_view cell : cells)
             for (const std::string_view name : {"latitude", "longitude", "date", "time"})
-                found += lowered_text(cell) == name;
+                found += lower_case(cell) == name;
         return found == 4 ? trimmed_cell(line) : std::string_view();
     }
     return {};
@@ -303,7 +300,7 @@ Result<Track> read_unicsv(const TrackFile& file) {
     split_table_line(names, separator_in(names), cells);
     std::vector<std::string> all, unused;
     for (const std::string_view cell : cells) {
-        all.push_back(lowered_text(cell));
+        all.push_back(lower_case(cell));
         if (!is_unicsv_name(all.back()) && !all.back().empty()) unused.push_back(all.back());
     }
     const UnicsvColumns columns{unicsv_column(all, unicsv_altitude), unicsv_column(all, unicsv_speed),
@@ -320,7 +317,7 @@ Result<Track> read_unicsv(const TrackFile& file) {
 bool has_line(std::string_view head, std::string_view begin) {
     TextLines lines(head);
     while (lines.next())
-        if (lowered_text(trimmed_cell(lines.line()).substr(0, begin.size())) == lowered_text(begin)) return true;
+        if (lower_case(trimmed_cell(lines.line()).substr(0, begin.size())) == lower_case(begin)) return true;
     return false;
 }
 

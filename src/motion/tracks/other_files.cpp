@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/text_track.hpp"
 
 namespace skyloop {
@@ -90,7 +90,7 @@ constexpr std::array named_flight_logs{
     NamedFlightLog{".ubx", "a UBX log with NAV-PVT, NAV-PVAT, NAV-HPPOSLLH, NAV-POSLLH or NAV-SOL"}};
 
 const NamedFlightLog* named_flight_log(const std::string& name) {
-    const std::string lower = lowered_text(name);
+    const std::string lower = lower_case(name);
     const auto found = std::find_if(named_flight_logs.begin(), named_flight_logs.end(),
                                     [&](const NamedFlightLog& log) { return lower.ends_with(log.ending); });
     return found == named_flight_logs.end() ? nullptr : &*found;

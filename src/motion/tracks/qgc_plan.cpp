@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/mission_items.hpp"
 #include "detail/text_track.hpp"
 
@@ -193,7 +193,7 @@ bool is_qgc_plan(const TrackFile& file) {
     constexpr std::size_t looked_at = 1 << 20;
     const std::string_view text = file.text.substr(0, looked_at);
     if (!trimmed_cell(text.substr(0, 64)).starts_with('{')) return false;
-    return lowered_text(file.name).ends_with(".plan") ||
+    return lower_case(file.name).ends_with(".plan") ||
            (text.find("\"fileType\"") != std::string_view::npos && text.find("\"Plan\"") != std::string_view::npos);
 }
 

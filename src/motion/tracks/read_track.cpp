@@ -1,5 +1,5 @@
 #include "motion/tracks/read_track.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 
 #include "detail/track_formats.hpp"
 
@@ -30,7 +30,7 @@ Result<Track> read_csv(const TrackFile& file) {
 // By the root of XML; a file in another encoding than UTF-8 shows none, and is told by its ending.
 bool is_xml_of(const TrackFile& file, std::string_view root, std::string_view ending) {
     const std::string_view name = xml_root_name(file.text);
-    return name.empty() ? lowered_text(file.name).ends_with(ending) : name == root;
+    return name.empty() ? lower_case(file.name).ends_with(ending) : name == root;
 }
 
 bool is_kmz(const TrackFile& file) { return file.text.starts_with("PK\x03\x04"); }

@@ -1,10 +1,10 @@
 #include "detail/table_cells.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace skyloop {
@@ -22,7 +22,7 @@ bool TableCells::next() {
 void TableCells::take_names() {
     names_.clear();
     for (const std::string_view cell : cells_)
-        names_.push_back(lowered_text(cell));
+        names_.push_back(lower_case(cell));
 }
 
 Result<void> TableCells::check_width() const {
@@ -31,7 +31,7 @@ Result<void> TableCells::check_width() const {
 }
 
 std::optional<std::size_t> TableCells::column(std::string_view name) const {
-    const auto at = std::find(names_.begin(), names_.end(), lowered_text(name));
+    const auto at = std::find(names_.begin(), names_.end(), lower_case(name));
     return at == names_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(at - names_.begin()));
 }
 
@@ -41,7 +41,7 @@ std::string_view TableCells::cell(std::optional<std::size_t> column) const {
 
 Result<std::optional<double>> TableCells::number(std::optional<std::size_t> column) const {
     const std::string_view text = cell(column);
-    if (text.empty() || lowered_text(text) == "nan") return std::nullopt;
+    if (text.empty() || lower_case(text) == "nan") return std::nullopt;
     const auto value = text_number(text);
     if (value) return value;
     const std::string what = *column < names_.size() ? names_[*column] : fmt::format("cell {}", *column + 1);
@@ -89,14 +89,12 @@ tl::unexpected<Error> TableCells::refusal(const std::string& what) const {
 
 std::optional<Nanoseconds> posix_since_1980(std::string_view seconds) {
     const std::size_t point = std::min(seconds.find('.'), seconds.size());
-    std::int64_t whole = 0;
-    const auto [end, status] = std::from_chars(seconds.data(), seconds.data() + point, whole);
+    const auto whole = number_in<std::int64_t>(seconds.substr(0, point));
     constexpr std::int64_t latest = 7258118400;  // 2200-01-01
-    if (status != std::errc() || end != seconds.data() + point || whole < gps_epoch_posix_s || whole >= latest)
-        return std::nullopt;
+    if (!whole || *whole < gps_epoch_posix_s || *whole >= latest) return std::nullopt;
     const auto fraction = point < seconds.size() ? text_number(seconds.substr(point)) : std::optional(0.0);
     if (!fraction || *fraction < 0 || *fraction >= 1) return std::nullopt;
-    const Nanoseconds since_1970 = std::chrono::seconds(whole) + Nanoseconds(std::llround(*fraction * 1e9));
+    const Nanoseconds since_1970 = std::chrono::seconds(*whole) + Nanoseconds(std::llround(*fraction * 1e9));
     return from_posix(since_1970, LeapSeconds::announced()).time_since_epoch();
 }
 

@@ -2,9 +2,10 @@
 #include "detail/text_track.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
+
+#include "base/core/number_in.hpp"
 
 namespace skyloop {
 namespace {
@@ -54,15 +55,7 @@ std::string one_line_of(std::string text) {
     return text;
 }
 
-std::optional<double> text_number(std::string_view text) {
-    text = trimmed_cell(text);
-    if (text.starts_with('+')) text.remove_prefix(1);
-    double value = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || status != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        return std::nullopt;
-    return value;
-}
+std::optional<double> text_number(std::string_view text) { return signed_number_in<double>(trimmed_cell(text)); }
 
 bool TextLines::next() {
     if (rest_.empty()) return false;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/mission_items.hpp"
 #include "detail/text_track.hpp"
 
@@ -42,7 +42,7 @@ Result<void> WplReader::take_line(std::string_view line, std::size_t number) {
     for (std::size_t i = 0; i < columns; ++i) {
         const auto value = text_number(cells_[i]);
         const bool whole = i < 4;
-        const bool open = i >= 4 && i < 8 && lowered_text(cells_[i]) == "nan";
+        const bool open = i >= 4 && i < 8 && lower_case(cells_[i]) == "nan";
         if (!value && !open)
             return refusal(number, fmt::format("column {} is '{}'; expected a number", i + 1, cells_[i].substr(0, 40)));
         values.at(i) = value.value_or(0);

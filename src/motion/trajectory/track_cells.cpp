@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 
+#include "base/core/number_in.hpp"
 #include "base/core/table_line.hpp"
 #include "base/core/written_place.hpp"
 #include "base/geo/geodetic.hpp"
@@ -46,10 +46,7 @@ std::optional<std::string> mistake_of_place(const Position<Ecef>& place) {
 
 std::optional<double> number_of_cell(std::string_view text, const TrackColumn& column, TrackQuantity quantity) {
     const std::string_view plain = text.substr(text.starts_with('+') ? 1 : 0);
-    double value = 0;
-    const auto [end, status] = std::from_chars(plain.data(), plain.data() + plain.size(), value);
-    if (status == std::errc() && end == plain.data() + plain.size())
-        return std::isfinite(value) ? std::optional(value * column.scale) : std::nullopt;
+    if (const auto value = number_in<double>(plain)) return *value * column.scale;
     const bool latitude = quantity == TrackQuantity::latitude;
     if (column.scale != 1 || !(latitude || quantity == TrackQuantity::longitude)) return std::nullopt;
     return written_degrees(text, latitude ? Coordinate::latitude : Coordinate::longitude);

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "base/core/column_name.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 #include "base/core/table_line.hpp"
 #include "detail/track_cells.hpp"
 
@@ -57,7 +57,7 @@ constexpr std::array known_columns{
 
 // In letters of either case; names of one word, such as "fix", stand for something else when they begin with a capital.
 bool is_called(const KnownColumn& column, std::string_view name) {
-    return column.name == name || (name.find('_') != std::string_view::npos && column.name == lowered_text(name));
+    return column.name == name || (name.find('_') != std::string_view::npos && column.name == lower_case(name));
 }
 
 // What other programs call a quantity, and what its unit measures. Of several for one quantity the earlier one counts.
@@ -135,13 +135,6 @@ ClockCount clock_count(double count) {
     return {Q::since_start, 1, "seconds from the start"};
 }
 
-std::optional<double> count_in(std::string_view cell) {
-    double count = 0;
-    const auto [end, status] = std::from_chars(cell.data(), cell.data() + cell.size(), count);
-    const bool whole = status == std::errc() && end == cell.data() + cell.size();
-    return whole && std::isfinite(count) ? std::optional(count) : std::nullopt;
-}
-
 }  // namespace
 
 // A time without a unit: what it is shows in the first row.
@@ -155,7 +148,7 @@ bool TrackColumns::take_bare_time(std::string_view name, std::size_t index, std:
         return true;
     };
     if (!has(Q::utc) && time_of_utc_cell(cell)) return take(Q::utc, 1, "a date and a time of day, UTC without a zone");
-    const auto count = count_in(cell);
+    const auto count = number_in<double>(cell);
     if (!count || has_time()) return false;
     const ClockCount clock = clock_count(*count);
     return take(clock.quantity, clock.scale, clock.told);
@@ -218,7 +211,7 @@ namespace {
 
 // A name whose unit is not known: its table is no route.
 bool looks_like_a_time(std::string_view name) {
-    const std::string lower = lowered_text(name);
+    const std::string lower = lower_case(name);
     constexpr std::array<std::string_view, 4> words{"time", "date", "utc", "epoch"};
     return std::any_of(words.begin(), words.end(),
                        [&](std::string_view word) { return lower.find(word) != std::string::npos; });

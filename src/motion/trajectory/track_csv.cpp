@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <utility>
 
+#include "base/core/number_in.hpp"
 #include "base/core/table_line.hpp"
 #include "base/core/written_place.hpp"
 #include "base/geo/local_frame.hpp"
@@ -191,10 +191,8 @@ Result<std::optional<Nanoseconds>> TrackTable::counted_time(TrackQuantity quanti
         return refusal(
             fmt::format("{} is '{}'; expected less than {:g} s", columns_[quantity]->name, cell(quantity), latest_s));
     const std::string_view text = cell(quantity);
-    std::int64_t whole = 0;
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), whole);
-    if (status == std::errc() && end == text.data() + text.size())
-        return Nanoseconds(whole * std::llround(columns_[quantity]->scale * 1e9));
+    if (const auto whole = number_in<std::int64_t>(text))
+        return Nanoseconds(*whole * std::llround(columns_[quantity]->scale * 1e9));
     return to_nanoseconds(Seconds(**seconds));
 }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "base/core/number_in.hpp"
 #include "detail/observed_parts.hpp"
 #include "receiver/protocol/nmea_decode.hpp"
 #include "receiver/protocol/nmea_satellites.hpp"
@@ -240,12 +240,7 @@ void NmeaEpochs::take_maker(std::string_view sentence) {
     if (!parts) return;
     const auto number = [&](std::size_t field) -> std::optional<double> {
         if (field >= parts->fields.size()) return std::nullopt;
-        const std::string_view text = parts->fields[field];
-        double value = 0;
-        const std::size_t sign = text.starts_with('+') ? 1 : 0;
-        const auto [end, status] = std::from_chars(text.data() + sign, text.data() + text.size(), value);
-        const bool whole = status == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-        return whole ? std::optional(value) : std::nullopt;
+        return signed_number_in<double>(parts->fields[field]);
     };
     ObservedMotion motion;
     if (parts->address == "PUBX" && !parts->fields.empty() && parts->fields[0] == "00") {

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "base/core/number_in.hpp"
 #include "base/core/table_line.hpp"
 #include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
@@ -33,14 +33,6 @@ LineCells pos_cells(std::string_view line) {
     return cells;
 }
 
-std::optional<double> pos_number(std::string_view cell) {
-    double value = 0;
-    const std::size_t sign = cell.starts_with('+') ? 1 : 0;
-    const auto [end, status] = std::from_chars(cell.data() + sign, cell.data() + cell.size(), value);
-    const bool whole = status == std::errc() && end == cell.data() + cell.size() && std::isfinite(value);
-    return whole ? std::optional(value) : std::nullopt;
-}
-
 // One row, read cell by cell from the left. After a failure all that follows is nothing.
 class PosRow {
 public:
@@ -48,7 +40,7 @@ public:
     std::optional<double> number(const char* what) {
         if (fault_) return std::nullopt;
         const std::string_view cell = next();
-        const std::optional<double> value = pos_number(cell);
+        const std::optional<double> value = signed_number_in<double>(cell);
         if (!value) fail_with(fmt::format("the {} is '{:.40}'; expected a number", what, cell));
         return value;
     }
@@ -164,14 +156,16 @@ void take_quality(PosRow& row, const PosHeader& header, ObservedEpoch& epoch) {
     epoch.satellites_used = static_cast<int>(*satellites);
     if (header.coordinates == PosCoordinates::ecef || !row.has(with_velocity)) return;
     row.pass_over(before);
-    const auto north = pos_number(row.next()), east = pos_number(row.next()), up = pos_number(row.next());
+    const auto north = signed_number_in<double>(row.next()), east = signed_number_in<double>(row.next()),
+               up = signed_number_in<double>(row.next());
     if (north && east && up) epoch.velocity = VelocityNed{*north, *east, -*up};
 }
 
 ObservedEpoch pos_epoch(PosRow& row, const PosHeader& header, const Geoid* geoid) {
     ObservedEpoch epoch;
     epoch.is_solution = true;
-    const auto time = pos_number(row.peek()) ? week_time(row, header.clock) : calendar_time(row, header.clock);
+    const auto time =
+        signed_number_in<double>(row.peek()) ? week_time(row, header.clock) : calendar_time(row, header.clock);
     if (time) epoch.time = *time;
     epoch.place =
         header.coordinates == PosCoordinates::ecef ? ecef_place(row) : geodetic_place(row, header.coordinates);
@@ -203,16 +197,20 @@ bool is_bare_row(std::string_view line) {
     if (cells.size() < columns) return false;
     const bool calendar = cells[0].size() == 10 && cells[0][4] == '/' && cells[0][7] == '/' &&
                           cells[1].find(':') != std::string_view::npos;
-    const auto tells = [&](std::size_t i) { return (calendar && i < 2) || pos_number(cells[i]).has_value(); };
+    const auto tells = [&](std::size_t i) {
+        return (calendar && i < 2) || signed_number_in<double>(cells[i]).has_value();
+    };
     for (std::size_t i = 0; i < columns; ++i)
         if (!tells(i)) return false;
     constexpr double latest_week = 10'000, most_satellites = 200;
     const auto whole = [&](std::size_t i, double least, double most) {
-        const double value = *pos_number(cells[i]);
+        const double value = *signed_number_in<double>(cells[i]);
         return value >= least && value <= most && value == std::floor(value);
     };
-    const auto within = [&](std::size_t i, double most) { return std::abs(*pos_number(cells[i])) <= most; };
-    const bool weeks = !calendar && whole(0, 1, latest_week) && *pos_number(cells[1]) >= 0 &&
+    const auto within = [&](std::size_t i, double most) {
+        return std::abs(*signed_number_in<double>(cells[i])) <= most;
+    };
+    const bool weeks = !calendar && whole(0, 1, latest_week) && *signed_number_in<double>(cells[1]) >= 0 &&
                        within(1, static_cast<double>(seconds_per_week));
     return (calendar || weeks) && within(2, 90) && within(3, 360) && whole(5, 1, 7) && whole(6, 0, most_satellites);
 }

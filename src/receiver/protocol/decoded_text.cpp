@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/core/letter_case.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 
 namespace skyloop {
@@ -87,12 +88,6 @@ std::string text_fields(const std::vector<DecodedField>& fields) {
         if (!text.empty()) text += ' ';
         text += field.name + '=' + std::visit(TextValue{}, field.value.content);
     }
-    return text;
-}
-
-std::string upper_case(std::string text) {
-    for (char& c : text)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
     return text;
 }
 

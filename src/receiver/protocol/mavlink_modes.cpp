@@ -5,6 +5,8 @@
 #include <optional>
 #include <span>
 
+#include "base/core/letter_case.hpp"
+
 namespace skyloop {
 namespace {
 
@@ -69,8 +71,8 @@ std::string_view px4_mode(std::uint32_t custom_mode) {
 }
 
 bool same_letters(std::string_view a, std::string_view b) {
-    const auto upper = [](char c) { return std::toupper(static_cast<unsigned char>(c)); };
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return upper(x) == upper(y); });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](char x, char y) { return upper_case(x) == upper_case(y); });
 }
 
 std::vector<std::string> all_mode_names() {

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/core/number_in.hpp"
 #include "receiver/protocol/message_listing.hpp"
 
 namespace skyloop {
@@ -59,19 +60,15 @@ constexpr auto sentence_table = std::to_array<SentenceNames>({
 
 bool all_digits(std::string_view text) { return text.find_first_not_of("0123456789") == text.npos; }
 
+// No exponent: 1E5 is a name.
 std::optional<double> decimal_number(std::string_view text) {
-    if (text.empty() || text.find_first_not_of("+-.0123456789") != text.npos) return std::nullopt;
-    const std::string copy(text);
-    char* end = nullptr;
-    const double value = std::strtod(copy.c_str(), &end);
-    if (end != copy.c_str() + copy.size()) return std::nullopt;
-    return value;
+    const bool is_signed = text.starts_with('+') || text.starts_with('-');
+    if (text.find_first_not_of(".0123456789", is_signed ? 1 : 0) != text.npos) return std::nullopt;
+    return number_in<double>(text.starts_with('+') ? text.substr(1) : text);
 }
 
 DecodedValue plain_value(std::string_view text) {
-    std::int64_t whole = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), whole);
-    if (read.ec == std::errc() && read.ptr == text.data() + text.size()) return {whole};
+    if (const auto whole = number_in<std::int64_t>(text)) return {*whole};
     if (const auto number = decimal_number(text)) return {*number};
     return {std::string(text)};
 }

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "base/core/number_in.hpp"
 #include "detail/nmea_encoding.hpp"
 #include "detail/nmea_field_reader.hpp"
 
@@ -76,8 +76,9 @@ std::optional<PubxMessage> read_time(FieldReader& r) {
     std::string_view leap = r.text(5);
     m.leap_seconds_by_default = leap.ends_with('D');
     if (m.leap_seconds_by_default) leap.remove_suffix(1);
-    const auto [end, error] = std::from_chars(leap.data(), leap.data() + leap.size(), m.leap_seconds);
-    if (error != std::errc() || end != leap.data() + leap.size()) r.refuse(5, "leap seconds");
+    const auto seconds = number_in<int>(leap);
+    if (!seconds) r.refuse(5, "leap seconds");
+    m.leap_seconds = seconds.value_or(0);
     m.clock_bias_ns = r.number(6, "a clock bias").value_or(0);
     m.clock_drift_ns_s = r.number(7, "a clock drift").value_or(0);
     m.granularity_ns = r.integer(8, "a granularity").value_or(0);

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 #include "base/core/spelling.hpp"
 #include "run/feed/truth_feed.hpp"
 
@@ -74,14 +74,6 @@ struct HostPort {
     std::optional<std::uint16_t> port;
 };
 
-template <class Number>
-std::optional<Number> whole_number(std::string_view text) {
-    Number number = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (text.empty() || read.ec != std::errc() || read.ptr != text.data() + text.size()) return std::nullopt;
-    return number;
-}
-
 // Letters, digits and what names, addresses and scopes have besides: no blanks, no control characters.
 bool is_host(std::string_view text) {
     constexpr std::size_t longest = 253;  // of a name, RFC 1035 section 2.3.4
@@ -113,7 +105,7 @@ std::optional<HostPort> host_and_port(std::string_view text, bool lone_port) {
         port = text;
         has_port = true;
     }
-    if (has_port) found.port = whole_number<std::uint16_t>(port);
+    if (has_port) found.port = number_in<std::uint16_t>(port);
     if (has_port && !found.port) return std::nullopt;
     const bool host_missing = host.empty() && !(lone_port && text.find(':') == std::string_view::npos);
     if (host_missing || (!host.empty() && !is_host(host))) return std::nullopt;
@@ -137,7 +129,7 @@ bool read_device(std::string_view text, std::uint32_t standard_baud, FeedAddress
     const std::size_t sign = text.rfind('@');
     address.host = text.substr(0, sign);
     address.baud = standard_baud;
-    if (sign != std::string_view::npos) address.baud = whole_number<std::uint32_t>(text.substr(sign + 1)).value_or(0);
+    if (sign != std::string_view::npos) address.baud = number_in<std::uint32_t>(text.substr(sign + 1)).value_or(0);
     return !address.host.empty() && address.baud >= slowest && address.baud <= fastest &&
            std::none_of(address.host.begin(), address.host.end(), [](unsigned char c) { return c < ' '; });
 }
@@ -169,7 +161,7 @@ bool read_rest(const FeedScheme& scheme, std::string_view text, FeedAddress& add
 
 // The addresses of a host, as far as no name server is needed.
 std::vector<std::string> known_addresses(std::string_view called) {
-    const std::string host = lowered_text(called);
+    const std::string host = lower_case(called);
     if (host == "localhost" || host == "localhost.localdomain" || host.ends_with(".localhost"))
         return {"127.0.0.1", "::1"};
     if (host == "ip6-localhost" || host == "ip6-loopback") return {"::1"};

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
+#include "base/core/number_in.hpp"
 #include "base/geo/local_frame.hpp"
 #include "run/fault/checked_command.hpp"
 #include "run/fault/fault_kind.hpp"
@@ -201,9 +201,7 @@ Result<std::optional<std::int64_t>> statement_whole(const FeedJson& statement, c
     if (value->is_number_integer() && !value->is_number_unsigned()) return value->get<std::int64_t>();
     if (value->is_string()) {
         const std::string& text = value->get_ref<const std::string&>();
-        std::int64_t number = 0;
-        const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-        if (!text.empty() && read.ec == std::errc() && read.ptr == text.data() + text.size()) return number;
+        if (const auto number = number_in<std::int64_t>(text)) return *number;
     }
     return statement_mistake(fmt::format("'{}' is {}; expected a whole number", key, shown_json(*value)));
 }
@@ -225,9 +223,7 @@ Result<std::optional<Nanoseconds>> statement_time(const FeedJson& statement) {
     if (value.is_number()) seconds = value.get<double>();
     if (value.is_string()) {
         const std::string& text = value.get_ref<const std::string&>();
-        double number = 0;
-        const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-        if (!text.empty() && read.ec == std::errc() && read.ptr == text.data() + text.size()) seconds = number;
+        if (const auto number = number_in<double>(text)) seconds = *number;
     }
     if (!(std::abs(seconds) <= longest_source_s))
         return statement_mistake(fmt::format("'t' is {}; expected seconds, at most ±4e9", shown_json(value)));

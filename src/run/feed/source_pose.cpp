@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <system_error>
 #include <utility>
+
+#include "base/core/number_in.hpp"
 
 namespace skyloop {
 namespace {
@@ -121,10 +122,7 @@ std::optional<double> source_number(std::string_view text) {
     if (first == std::string_view::npos) return std::nullopt;
     text = text.substr(first, text.find_last_not_of(blanks) - first + 1);
     if (text.front() == '+') text.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-    return value;
+    return number_in<double>(text);
 }
 
 std::vector<std::string_view> source_cells(std::string_view line) {

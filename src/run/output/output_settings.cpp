@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "base/core/number_in.hpp"
 #include "base/core/spelling.hpp"
 
 namespace skyloop {
@@ -42,11 +42,10 @@ std::string take_word(std::string_view key, std::string_view text, const std::ar
 }
 
 std::string take_number(std::string_view key, std::string_view text, int least, std::uint8_t& value) {
-    int number = -1;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (text.empty() || error != std::errc() || end != text.data() + text.size() || number < least || number > 255)
+    const auto number = number_in<std::uint8_t>(text);
+    if (!number || *number < least)
         return fmt::format("{} '{}': expected a whole number from {} to 255", key, text, least);
-    value = static_cast<std::uint8_t>(number);
+    value = *number;
     return {};
 }
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "base/core/spelling.hpp"
 #include "base/core/text_file.hpp"
 #include "detail/board_keys.hpp"
@@ -31,13 +31,13 @@ std::vector<std::string> words_of_board(const std::string& name, const fs::path&
     const auto board = text ? read_board(*text, path.string()) : fail(text.error());
     if (!board) return words;
     constexpr std::string_view module = "MOD=";
-    words.push_back(lowered_text(board->identity.hardware));
+    words.push_back(lower_case(board->identity.hardware));
     for (const std::string& line : board->identity.extensions)
-        if (line.starts_with(module)) words.push_back(lowered_text(line.substr(module.size())));
+        if (line.starts_with(module)) words.push_back(lower_case(line.substr(module.size())));
     for (const std::string& answer : board->identity.version_answers)
         for (std::size_t from = 0, to = 0; to != std::string::npos; from = to + 1) {
             to = answer.find(',', from);
-            words.push_back(lowered_text(answer.substr(from, to - from)));
+            words.push_back(lower_case(answer.substr(from, to - from)));
         }
     // Numbers, and letters alone, name no module.
     std::erase_if(words, [](const std::string& word) {
@@ -67,7 +67,7 @@ bool contains_generation(std::string_view word, std::string_view generation) {
 // The board that is meant by "m8", "NEO-M8N" or "ubloxm8"; empty: nobody can tell.
 std::string meant_board(std::string_view name, const std::vector<std::string>& boards,
                         std::span<const fs::path> directories) {
-    const std::string word = lowered_text(name);
+    const std::string word = lower_case(name);
     std::vector<std::pair<std::string, std::string>> named;  // a word, and its board
     std::set<std::string> begin_so;
     for (const std::string& board : boards)

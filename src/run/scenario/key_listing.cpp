@@ -5,6 +5,7 @@
 #include <cctype>
 #include <map>
 
+#include "base/core/letter_case.hpp"
 #include "run/scenario/key_catalogue.hpp"
 
 namespace skyloop {
@@ -130,8 +131,7 @@ bool listed(const KeyTable& table, const KeyEntry& key) {
 }
 
 std::string table_part(const KeyTable& table, std::string_view heading, std::string meaning) {
-    if (!meaning.empty())
-        meaning.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(meaning.front())));
+    if (!meaning.empty()) meaning.front() = upper_case(meaning.front());
     std::string part =
         fmt::format("## {0}{1}{2}\n\n{3}.\n\n", table.list ? "[[" : "[", heading, table.list ? "]]" : "]", meaning);
     std::string rows;
@@ -169,7 +169,7 @@ std::string meaning_of(const std::vector<KeyTable>& tables, const KeyTable& tabl
 
 std::string key_help(const KeyEntry& key) {
     std::string text = key.meaning;
-    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    text.front() = upper_case(text.front());
     if (const std::string_view unit = key_unit(key.name); !unit.empty()) text += fmt::format(", {}", unit);
     if (const std::string limits = limits_of(key); !limits.empty()) text += "; " + limits;
     if (const std::string standard = default_of(key); standard != "none" && standard != "needed")

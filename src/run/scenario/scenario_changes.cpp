@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <set>
 #include <utility>
 
+#include "base/core/number_in.hpp"
 #include "base/core/text_file.hpp"
 #include "detail/scenario_keys.hpp"
 #include "detail/toml_values.hpp"
@@ -54,10 +54,7 @@ std::vector<std::string> names_in(const toml::array& list, std::string_view list
 
 // @param list_name what the list is called where it stands: "receiver"
 std::optional<std::size_t> place_in_list(const toml::array& list, std::string_view list_name, std::string_view part) {
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-    if (error == std::errc() && end == part.data() + part.size())
-        return index < list.size() ? std::optional(index) : std::nullopt;
+    if (const auto index = number_in<std::size_t>(part)) return *index < list.size() ? index : std::nullopt;
     if (const auto named = entry_with(list, "name", part)) return named;
     if (const auto only = entry_with(list, "kind", part)) return only;
     const std::vector<std::string> names = names_in(list, list_name);

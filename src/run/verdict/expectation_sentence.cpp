@@ -1,7 +1,6 @@
 #include "run/verdict/expectation_sentence.hpp"
 
-#include <charconv>
-
+#include "base/core/number_in.hpp"
 #include "detail/sentence_words.hpp"
 
 namespace skyloop {
@@ -265,10 +264,8 @@ EventReference SentenceParser::read_event() {
 void SentenceParser::name_event(std::string text, std::size_t column) {
     const std::size_t mark = text.rfind('#');
     if (mark != std::string::npos) {
-        int occurrence = 0;
-        const char* end = text.data() + text.size();
-        const auto [rest, error] = std::from_chars(text.data() + mark + 1, end, occurrence);
-        if (mark == 0 || error != std::errc{} || rest != end || occurrence < 1)
+        const int occurrence = number_in<int>(std::string_view(text).substr(mark + 1)).value_or(0);
+        if (mark == 0 || occurrence < 1)
             return words_.refuse(column, "'" + text + "' names no occurrence; expected NAME#NUMBER, from 1");
         event_.occurrence = occurrence;
         text.resize(mark);

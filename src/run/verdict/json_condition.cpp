@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 #include "detail/sentence_words.hpp"
 
 namespace skyloop {
@@ -64,9 +64,7 @@ std::optional<ConditionValue> parse_condition_value(std::string_view text) {
     const bool quoted =
         text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
     if (quoted) return std::string(text.substr(1, text.size() - 2));
-    double number = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc{} && rest == text.data() + text.size() && std::isfinite(number)) return number;
+    if (const auto number = number_in<double>(text)) return *number;
     if (const auto word = parse_path(text); word && word->size() == 1 && !(text[0] >= '0' && text[0] <= '9'))
         return std::string(text);
     return std::nullopt;
@@ -77,11 +75,9 @@ const JsonValue* value_at(const JsonValue& object, const std::vector<std::string
     const JsonValue* value = &object;
     for (std::size_t i = first; i < path.size(); ++i) {
         if (value->is_array()) {
-            std::size_t index = 0;
-            const char* end = path[i].data() + path[i].size();
-            const auto [rest, error] = std::from_chars(path[i].data(), end, index);
-            if (error != std::errc{} || rest != end || index >= value->size()) return nullptr;
-            value = &(*value)[index];
+            const auto index = number_in<std::size_t>(path[i]);
+            if (!index || *index >= value->size()) return nullptr;
+            value = &(*value)[*index];
             continue;
         }
         const auto found = value->is_object() ? value->find(path[i]) : value->end();
@@ -124,7 +120,7 @@ bool value_fulfils(const JsonCondition& condition, const JsonValue& value) {
 bool names_class(const JsonValue& object, const std::string& part) {
     const auto found = object.find("class");
     return found != object.end() && found->is_string() &&
-           lowered_text(found->get_ref<const std::string&>()) == lowered_text(part);
+           lower_case(found->get_ref<const std::string&>()) == lower_case(part);
 }
 
 std::string value_text(const ConditionValue& value) {

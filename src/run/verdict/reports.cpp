@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "base/core/letter_case.hpp"
 #include "base/core/terminal_text.hpp"
 #include "base/time/utc_time.hpp"
 
@@ -15,13 +16,6 @@ namespace skyloop {
 namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
-
-std::string capitals(std::string_view text) {
-    std::string large(text);
-    std::transform(large.begin(), large.end(), large.begin(),
-                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-    return large;
-}
 
 std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
 
@@ -115,7 +109,7 @@ nlohmann::ordered_json verdict_object(const Verdict& verdict) {
 std::string verdict_text(std::span<const Verdict> verdicts, const ReportedRun& run) {
     std::string text;
     for (const Verdict& verdict : verdicts)
-        text += fmt::format("{:9}  {}: {} (at {:.3f} s)\n", capitals(outcome_name(verdict.outcome)),
+        text += fmt::format("{:9}  {}: {} (at {:.3f} s)\n", upper_case(outcome_name(verdict.outcome)),
                             on_a_terminal(verdict.name), on_a_terminal(verdict.evidence), verdict.run_time.value());
     text += fmt::format("{} of {} expectations met in {} (seed {}, {:.3f} s)", count_of(verdicts, Outcome::passed),
                         verdicts.size(), on_a_terminal(run.scenario), run.seed, run.length.value());

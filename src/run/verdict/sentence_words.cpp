@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "base/core/spelling.hpp"
 
 namespace skyloop {
@@ -28,7 +28,7 @@ bool is_blank(char character) {
 
 bool needs_quotes(std::string_view name) {
     if (name.empty() || name.front() == '\'' || name.front() == '"') return true;
-    const std::string small = lowered_text(name);
+    const std::string small = lower_case(name);
     return std::any_of(name.begin(), name.end(), is_blank) ||
            std::find(std::begin(own_words), std::end(own_words), small) != std::end(own_words);
 }
@@ -59,7 +59,7 @@ void SentenceWords::split(std::string_view text) {
 }
 
 bool SentenceWords::is_next(std::string_view word) const {
-    return !at_end() && !words_[next_].quoted && lowered_text(words_[next_].text) == lowered_text(word);
+    return !at_end() && !words_[next_].quoted && lower_case(words_[next_].text) == lower_case(word);
 }
 
 void SentenceWords::take() {
@@ -78,7 +78,7 @@ bool SentenceWords::accept(std::initializer_list<std::string_view> words) {
     if (mistake_) return false;
     std::size_t at = next_;
     for (const std::string_view word : words) {
-        const bool same = at < words_.size() && !words_[at].quoted && lowered_text(words_[at].text) == word;
+        const bool same = at < words_.size() && !words_[at].quoted && lower_case(words_[at].text) == word;
         if (!same) {
             // The first word alone was right: the mistake is in the second.
             wanted(fmt::format("{}", fmt::join(words, " ")));

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <charconv>
 #include <optional>
 #include <type_traits>
 
+#include "base/core/number_in.hpp"
 #include "detail/switch_parts.hpp"
 #include "wire/transport/serial.hpp"
 
@@ -46,13 +46,11 @@ Result<Output> parse_output(std::string_view uri, std::string_view rest, std::ar
     const std::size_t slash = rest.rfind('/');
     if (!active || slash == std::string_view::npos) return not_understood(uri, expected);
     const std::string_view digits = rest.substr(slash + 1);
-    int number = -1;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (error != std::errc() || end != digits.data() + digits.size() || number < range[0] || number > range[1])
-        return not_understood(uri, expected);
+    const auto number = number_in<int>(digits);
+    if (!number || *number < range[0] || *number > range[1]) return not_understood(uri, expected);
     auto board = parse_usb_address(rest.substr(0, slash));
     if (!board) return fail(ErrorCode::usage, fmt::format("power '{}': {}", uri, board.error().message));
-    return Output{std::move(*board), number, *active};
+    return Output{std::move(*board), *number, *active};
 }
 
 Result<ActuatorUri> parse_relay(std::string_view uri, std::string_view rest) {

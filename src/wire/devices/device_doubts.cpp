@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 
+#include "base/core/number_in.hpp"
 #include "base/core/text_file.hpp"
 #include "detail/device_nodes.hpp"
 
@@ -90,8 +90,7 @@ void add_latency_doubt(const DeviceEntry& device, const SystemFolders& folders, 
     for (const DeviceNode& node : device.nodes) {
         const std::string text = first_line_of(folders.sysfs / "class" / "tty" / fs::path(node.path).filename() /
                                                "device" / "latency_timer");
-        std::uint32_t value = 0;
-        std::from_chars(text.data(), text.data() + text.size(), value);
+        const auto value = number_in<std::uint32_t>(text).value_or(0);
         if (node.kind == NodeKind::serial && value > wanted)
             doubts.push_back(
                 fmt::format("{} hands bytes on after up to {} ms: skyloop sets its latency_timer to {} ms on "

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <utility>
+
+#include "base/core/letter_case.hpp"
+#include "base/core/number_in.hpp"
 
 namespace skyloop {
 namespace {
@@ -13,7 +15,7 @@ namespace {
 // "8N1"; nothing for anything else.
 std::optional<SerialFormat> read_format(std::string_view text) {
     if (text.size() != 3) return std::nullopt;
-    const char parity = static_cast<char>(std::toupper(static_cast<unsigned char>(text[1])));
+    const char parity = upper_case(text[1]);
     SerialFormat format;
     if (text[0] != '7' && text[0] != '8') return std::nullopt;
     if (parity != 'N' && parity != 'E' && parity != 'O') return std::nullopt;
@@ -27,11 +29,8 @@ std::optional<SerialFormat> read_format(std::string_view text) {
 }  // namespace
 
 std::optional<std::uint32_t> read_baud(std::string_view text) {
-    std::uint32_t baud = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), baud);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    if (baud < lowest_baud || baud > highest_baud) return std::nullopt;
-    return baud;
+    const auto baud = number_in<std::uint32_t>(text);
+    return baud && *baud >= lowest_baud && *baud <= highest_baud ? baud : std::nullopt;
 }
 
 std::string read_line_options(std::string_view text, SerialFormat& format) {

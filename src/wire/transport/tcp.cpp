@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <utility>
 
+#include "base/core/number_in.hpp"
 #include "detail/tcp_listener.hpp"
 #include "detail/tcp_socket.hpp"
 
@@ -32,11 +32,9 @@ Result<TcpAddress> parse_tcp_address(std::string_view text) {
         if (host.empty()) return refused("the host is missing");
         address.host = host;
     }
-    unsigned number = 0;
-    const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-    if (port.empty() || error != std::errc() || end != port.data() + port.size() || number > 65535)
-        return refused("a port from 0 to 65535 is missing");
-    address.port = static_cast<std::uint16_t>(number);
+    const auto number = number_in<std::uint16_t>(port);
+    if (!number) return refused("a port from 0 to 65535 is missing");
+    address.port = *number;
     return address;
 }
 

@@ -7,9 +7,9 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
+#include "base/core/number_in.hpp"
 #include "detail/tcp_socket.hpp"
 
 namespace skyloop {
@@ -39,9 +39,7 @@ TcpAddress numeric_address(const sockaddr_storage& name, socklen_t size) {
     if (::getnameinfo(reinterpret_cast<const sockaddr*>(&name), size, host.data(), host.size(), service.data(),
                       service.size(), NI_NUMERICHOST | NI_NUMERICSERV) != 0)
         return {"?", 0};
-    TcpAddress address{host.data(), 0};
-    std::from_chars(service.data(), service.data() + std::strlen(service.data()), address.port);
-    return address;
+    return {host.data(), number_in<std::uint16_t>(service.data()).value_or(0)};
 }
 
 }  // namespace

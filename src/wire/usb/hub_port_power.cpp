@@ -4,8 +4,9 @@
 #include <libusb-1.0/libusb.h>
 
 #include <array>
-#include <charconv>
 #include <utility>
+
+#include "base/core/number_in.hpp"
 
 namespace skyloop {
 namespace {
@@ -28,10 +29,9 @@ std::optional<PortPlace> port_place(const std::string& path) {
     const std::size_t last = dot == std::string::npos ? dash : dot;
     PortPlace place;
     place.hub = dot == std::string::npos ? "usb" + path.substr(0, dash) : path.substr(0, dot);
-    const char* end = path.data() + path.size();
-    const auto [rest, error] = std::from_chars(path.data() + last + 1, end, place.port);
+    place.port = number_in<int>(std::string_view(path).substr(last + 1)).value_or(0);
     constexpr int most_ports = 255;  // bNbrPorts is one byte
-    if (error != std::errc() || rest != end || place.port < 1 || place.port > most_ports) return std::nullopt;
+    if (place.port < 1 || place.port > most_ports) return std::nullopt;
     return place;
 }
 

@@ -3,20 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+
+#include "base/core/number_in.hpp"
 
 namespace skyloop {
 namespace {
 
 constexpr std::size_t id_digits = 4;
 constexpr std::size_t ids_size = 2 * id_digits + 1;
-
-std::optional<std::uint16_t> hexadecimal(std::string_view text) {
-    std::uint16_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-}
 
 }  // namespace
 
@@ -39,8 +33,8 @@ std::string to_string(UsbIds ids) { return fmt::format("{:04x}:{:04x}", ids.vend
 
 std::optional<UsbIds> parse_usb_ids(std::string_view text) {
     if (text.size() != ids_size || text[id_digits] != ':') return std::nullopt;
-    const auto vendor = hexadecimal(text.substr(0, id_digits));
-    const auto product = hexadecimal(text.substr(id_digits + 1));
+    const auto vendor = hexadecimal_number_in<std::uint16_t>(text.substr(0, id_digits));
+    const auto product = hexadecimal_number_in<std::uint16_t>(text.substr(id_digits + 1));
     if (!vendor || !product) return std::nullopt;
     return UsbIds{*vendor, *product};
 }

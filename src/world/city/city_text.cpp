@@ -1,5 +1,5 @@
 #include "detail/city_text.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 
 #include <fmt/format.h>
 
@@ -60,7 +60,7 @@ std::string shown(std::string_view word) {
 }
 
 std::string material_of_name(std::string_view name) {
-    const std::string lower = lowered_text(name);
+    const std::string lower = lower_case(name);
     if (lower.find("ground") != std::string::npos) {
         for (const char* wetness : {"dry", "medium", "wet"})
             // P.2040 has a "medium dry ground": medium goes before dry.
@@ -90,7 +90,7 @@ std::string material_of_name(std::string_view name) {
 }
 
 bool names_ground(std::string_view name) {
-    const std::string lower = lowered_text(name);
+    const std::string lower = lower_case(name);
     if (lower.find("ground") != std::string::npos || lower.find("terrain") != std::string::npos) return true;
     const std::size_t plane = lower.find("plane");
     if (plane == std::string::npos) return false;

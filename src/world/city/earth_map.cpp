@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "base/core/digest.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/city_text.hpp"
 
 namespace skyloop {
@@ -35,7 +35,7 @@ int utm_zone(std::string_view name) {
 bool is_a_likeness(const std::string& definition, const PJ* found) {
     if (definition.find_first_of("[{=") != std::string::npos || definition.starts_with("EPSG:")) return false;
     const char* code = proj_get_id_code(found, 0);
-    return !(code && definition.ends_with(code)) && lowered_text(proj_get_name(found)) != lowered_text(definition);
+    return !(code && definition.ends_with(code)) && lower_case(proj_get_name(found)) != lower_case(definition);
 }
 
 PJ_COORD coordinate(double x, double y, double z = 0) { return proj_coord(x, y, z, HUGE_VAL); }

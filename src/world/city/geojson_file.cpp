@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "base/core/middle.hpp"
 #include "detail/city_text.hpp"
 #include "detail/json_text.hpp"
@@ -50,7 +50,7 @@ OutlineTags tags_of(const json& properties) {
     OutlineTags tags;
     if (!properties.is_object()) return tags;
     for (const auto& [key, value] : properties.items()) {
-        const std::string lower = lowered_text(key);
+        const std::string lower = lower_case(key);
         if (value.is_string() && !value.get_ref<const std::string&>().empty())
             tags.emplace(lower, value.get<std::string>());
         if (value.is_number()) tags.emplace(lower, fmt::format("{}", value.get<double>()));
@@ -79,7 +79,7 @@ bool take_quoted(std::string_view& text, std::string& word) {
 OutlineTags tags_of_hstore(std::string_view text) {
     OutlineTags tags;
     for (std::string key, value; take_quoted(text, key) && take_quoted(text, value);)
-        if (!value.empty()) tags.emplace(lowered_text(key), value);
+        if (!value.empty()) tags.emplace(lower_case(key), value);
     return tags;
 }
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/city_text.hpp"
 #include "detail/height_grid.hpp"
 #include "detail/place_on_earth.hpp"
@@ -95,7 +95,7 @@ private:
         unsigned seen = 0;
         for (;;) {
             const char* before = at_;
-            const std::string key = lowered_text(next_word());
+            const std::string key = lower_case(next_word());
             const auto found = std::find(keys.begin(), keys.end(), key);
             if (found == keys.end()) {
                 const bool letter = !key.empty() && key[0] >= 'a' && key[0] <= 'z' && key != "nan" && key != "inf";

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "detail/city_text.hpp"
 #include "detail/place_on_earth.hpp"
 #include "world/city/footprint.hpp"
@@ -73,7 +73,7 @@ MeshPart MeshBuilder::part(std::string_view material, std::span<const std::strin
     const std::string meant = material_of_name(material);
     if (!meant.empty()) part.material = model_.material_index(meant);
     // A material may be called "terrain", too, but Blender's "Plane" is a name of objects.
-    part.ground = lowered_text(material).find("plane") == std::string::npos && names_ground(material);
+    part.ground = lower_case(material).find("plane") == std::string::npos && names_ground(material);
     for (const std::string_view name : names)
         part.ground = part.ground || names_ground(name);
     return part;

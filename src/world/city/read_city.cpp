@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "base/core/archive.hpp"
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "base/core/text_file.hpp"
 #include "detail/city_text.hpp"
 #include "detail/companion_files.hpp"
@@ -150,7 +150,7 @@ constexpr std::array<CityEnding, 16> city_endings{{{".obj", parse_named<parse_ob
                                                    {".cityjson", parse_any_cityjson}}};
 
 const CityEnding* ending_of(std::string_view path) {
-    std::string name = lowered_text(path.substr(path.rfind('/') + 1));
+    std::string name = lower_case(path.substr(path.rfind('/') + 1));
     for (const std::string_view packed : {".gz", ".z", ".bz2", ".xz", ".zst"})
         if (name.ends_with(packed)) {
             name.resize(name.size() - packed.size());
@@ -162,12 +162,12 @@ const CityEnding* ending_of(std::string_view path) {
 }
 
 bool names_archive(std::string_view path) {
-    const std::string name = lowered_text(path.substr(path.rfind('/') + 1));
+    const std::string name = lower_case(path.substr(path.rfind('/') + 1));
     return name.ends_with(".zip") || name.ends_with(".tgz") || name.find(".tar") != std::string::npos;
 }
 
 /// Whether a file is a Mitsuba scene by its name.
-bool names_scene(std::string_view path) { return !is_hidden_file(path) && lowered_text(path).ends_with(".xml"); }
+bool names_scene(std::string_view path) { return !is_hidden_file(path) && lower_case(path).ends_with(".xml"); }
 
 // Which files of an archive are taken for its city: those of the lowest rank. Scenes name meshes, and an XML file
 // beside a city's tells of it.
@@ -199,7 +199,7 @@ Result<std::string> city_in(const ArchiveFiles& files, std::string_view name) {
 
 // All of an archive but pictures, which nothing here reads.
 bool may_belong_to_city(std::string_view name) {
-    const std::string lower = lowered_text(name);
+    const std::string lower = lower_case(name);
     return !lower.ends_with(".png") && !lower.ends_with(".jpg") && !lower.ends_with(".jpeg");
 }
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <tuple>
 
-#include "base/core/lowered_text.hpp"
+#include "base/core/letter_case.hpp"
 #include "world/city/city_file.hpp"
 
 namespace skyloop {
@@ -58,7 +58,7 @@ std::string adv_definition(std::string_view lower) {
 
 std::optional<ReferenceSystem> reference_system(std::string_view name) {
     if (name.empty()) return std::nullopt;
-    const std::string lower = lowered_text(name);
+    const std::string lower = lower_case(name);
     const bool wkt = name.find_first_of("[{") != std::string_view::npos;  // or JSON: names other systems inside
     if (!wkt && lower.find("crs84") != std::string::npos) return wgs84_degrees("OGC:CRS84");
     std::string definition = wkt ? "" : adv_definition(lower);

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
+#include "base/core/number_in.hpp"
 #include "base/core/text_file.hpp"
 
 namespace skyloop {
@@ -23,12 +23,11 @@ Result<std::vector<double>> nequick_numbers(std::string_view text, std::string_v
         }
         const std::size_t end = std::min(text.find_first_of(" ,\t\r\n", at), text.size());
         const std::string_view word = text.substr(at, std::min<std::size_t>(end - at, 40));
-        double value = 0;
-        const auto [stopped, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc{} || stopped != text.data() + end || !std::isfinite(value))
+        const auto value = number_in<double>(word);
+        if (!value || word.size() != end - at)
             return fail(ErrorCode::input, fmt::format("{}:{}: found something that is no number; expected {} numbers",
                                                       name, line, count));
-        numbers.push_back(value);
+        numbers.push_back(*value);
         if (numbers.size() > count)
             return fail(ErrorCode::input, fmt::format("{}:{}: found more; expected {} numbers", name, line, count));
         at = end;

@@ -4,9 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
+
+#include "base/core/number_in.hpp"
 
 namespace skyloop {
 namespace {
@@ -23,9 +24,9 @@ std::string read_cells(std::string_view line, std::size_t columns, std::array<do
         const std::size_t comma = std::min(line.find(',', at), line.size());
         const std::string_view cell = table_trimmed(line.substr(at, comma - at));
         if (count == columns) return fmt::format("found more than {} columns", columns);
-        const auto [stopped, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[count]);
-        if (error != std::errc{} || stopped != cell.data() + cell.size() || !std::isfinite(values[count]))
-            return fmt::format("found \"{}\"; expected a number", cell.substr(0, 40));
+        const auto number = number_in<double>(cell);
+        if (!number) return fmt::format("found \"{}\"; expected a number", cell.substr(0, 40));
+        values[count] = *number;
         at = comma + 1;
     }
     return count == columns ? std::string() : fmt::format("found {} columns; expected {}", count, columns);

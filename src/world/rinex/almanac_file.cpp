@@ -9,15 +9,15 @@
 #include <numbers>
 #include <optional>
 
+#include "base/core/letter_case.hpp"
 #include "detail/fields.hpp"
 
 namespace skyloop {
 namespace rinex {
 namespace {
 
-bool contains_word(std::string_view line, std::string_view lower_case) {
-    const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
-    return std::search(line.begin(), line.end(), lower_case.begin(), lower_case.end(), same) != line.end();
+bool contains_word(std::string_view line, std::string_view word) {
+    return lower_case(line).find(word) != std::string::npos;
 }
 
 std::optional<Line> next_filled(LineReader& lines) {

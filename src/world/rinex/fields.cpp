@@ -1,8 +1,9 @@
 #include "detail/fields.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
+
+#include "base/core/number_in.hpp"
 
 namespace skyloop::rinex {
 
@@ -51,20 +52,12 @@ std::optional<double> real_field(std::string_view field) {
     if (field.empty() || field.size() > digits.size()) return std::nullopt;
     for (std::size_t i = 0; i < field.size(); ++i)
         digits[i] = field[i] == 'D' || field[i] == 'd' ? 'e' : field[i];
-    double value = 0;
-    const char* end = digits.data() + field.size();
-    const auto [stopped, error] = std::from_chars(digits.data(), end, value);
-    if (error != std::errc{} || stopped != end || !std::isfinite(value)) return std::nullopt;
-    return value;
+    return number_in<double>({digits.data(), field.size()});
 }
 
 std::optional<int> whole_field(std::string_view field) {
     field = trimmed(field);
-    if (field.empty()) return 0;
-    int value = 0;
-    const auto [stopped, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc{} || stopped != field.data() + field.size()) return std::nullopt;
-    return value;
+    return field.empty() ? 0 : number_in<int>(field);
 }
 
 std::string in_quotes(std::string_view text) {
