@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryFault, testing::ValuesIn(fault_rows),
 TEST(FaultRows, AreThoseOfTheCatalogue) {
     std::vector<std::string> kinds, rows;
     for (const FaultKind& kind : fault_kinds()) {
-        kinds.push_back(kind.name);
+        kinds.emplace_back(kind.name);
         EXPECT_FALSE(kind.cause.empty()) << kind.name;
         const FaultRow* row = fault_row(kind.name);
         EXPECT_TRUE(row == nullptr || !kind.measuring_receivers_only || row->bench == measuring) << kind.name;

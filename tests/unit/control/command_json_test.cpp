@@ -102,7 +102,7 @@ TEST(CommandJson, StartsEveryKindOfFaultThatNeedsNothing) {
         for (const ParameterSpec& spec : kind.parameters)
             needs = needs || spec.needed;
         if (needs) continue;
-        const auto fault = live_fault_from_json(R"({"kind":")" + kind.name + R"(","for_s":5})", "http");
+        const auto fault = live_fault_from_json(R"({"kind":")" + std::string(kind.name) + R"(","for_s":5})", "http");
         if (!fault) {
             EXPECT_FALSE(fault.error().message.empty()) << kind.name;  // its standards alone may say too little
             continue;

@@ -47,9 +47,9 @@ Scenario faulty_scenario(const std::string& faults) {
         faults);
 }
 
-std::string wire_fault_text(const std::string& kind, const std::string& direction) {
-    std::string text = "[[fault]]\nkind = \"" + kind + "\"\nat_s = 1.2\nfor_s = 2.5\n";
-    if (!direction.empty()) text += "direction = \"" + direction + "\"\n";
+std::string wire_fault_text(std::string_view kind, std::string_view direction) {
+    std::string text = "[[fault]]\nkind = \"" + std::string(kind) + "\"\nat_s = 1.2\nfor_s = 2.5\n";
+    if (!direction.empty()) text += "direction = \"" + std::string(direction) + "\"\n";
     if (kind == "inserted_garbage") text += "bursts_per_s = 5\n";
     return text;
 }
@@ -82,15 +82,16 @@ std::vector<const FaultKind*> wire_kinds() {
 }
 
 // The ways that a fault can go; an empty word where it has none.
-std::vector<std::string> directions_of(const FaultKind& kind) {
+std::span<const std::string_view> directions_of(const FaultKind& kind) {
+    static constexpr std::string_view none[] = {""};
     for (const ParameterSpec& parameter : kind.parameters)
         if (parameter.name == "direction") return parameter.choices;
-    return {""};
+    return none;
 }
 
 TEST(WireFaultsEnd, AtEveryOtherEndInEveryDirection) {
     for (const FaultKind* kind : wire_kinds())
-        for (const std::string& direction : directions_of(*kind))
+        for (const std::string_view direction : directions_of(*kind))
             for (const OtherEnd end : {OtherEnd::nothing, OtherEnd::memory, OtherEnd::client})
                 EXPECT_EQ(seconds_run(wire_fault_text(kind->name, direction), end), 6)
                     << kind->name << ' ' << direction << ' ' << static_cast<int>(end);
