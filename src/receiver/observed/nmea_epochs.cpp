@@ -151,7 +151,7 @@ void NmeaEpochs::begin(std::optional<Nanoseconds> of_day) {
         add_words(own, left);
     }
     taken_.ended = epoch();
-    under_way_.emplace();
+    under_way_ = UnderWay{};
     under_way_->epoch.of_day = of_day;
     under_way_->epoch.told.timed = of_day.has_value();
     under_way_->epoch.told.motion = of_next;

@@ -138,7 +138,7 @@ void UbxEpochs::with(const UbxFrameView& frame, unsigned part, Taker&& taker) {
     if (taken_.is_senseless) return;
     if (!under_way_ || under_way_->itow_ms != message->i_tow) {
         taken_.ended = end();
-        under_way_.emplace();
+        under_way_ = UnderWay{};
         under_way_->itow_ms = message->i_tow;
     }
     taken_.part = part;

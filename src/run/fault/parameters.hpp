@@ -51,30 +51,27 @@ struct ParameterSpec {
 
     [[nodiscard]] std::optional<ParameterValue> standard_value() const;
 
+    /// The same, absent unless given.
+    [[nodiscard]] constexpr ParameterSpec without_standard() const {
+        return {name, type, meaning, {}, needed, least, most, count_least, count_most, choices};
+    }
     /// The same, one that must be given.
     [[nodiscard]] constexpr ParameterSpec that_is_needed() const {
-        ParameterSpec spec = *this;
-        spec.needed = true;
-        spec.standard = {};
-        return spec;
-    }
-    /// The same, no_standard unless given.
-    [[nodiscard]] constexpr ParameterSpec without_standard() const {
-        ParameterSpec spec = *this;
-        spec.standard = {};
-        return spec;
+        return {name, type, meaning, {}, true, least, most, count_least, count_most, choices};
     }
 };
 
-/// A standard of none: the parameter is no_standard unless given.
+/// No standard: the parameter is absent unless given.
 inline constexpr std::nullopt_t no_standard = std::nullopt;
 
 // Tables of parameters are written with these.
 constexpr ParameterSpec number_parameter(std::string_view name, std::optional<double> standard, double least,
                                          double most, std::string_view meaning) {
-    ParameterSpec spec{.name = name, .meaning = meaning, .least = least, .most = most};
-    if (standard) spec.standard = *standard;
-    return spec;
+    return {.name = name,
+            .meaning = meaning,
+            .standard = standard ? ParameterStandard(*standard) : ParameterStandard(),
+            .least = least,
+            .most = most};
 }
 constexpr ParameterSpec whole_number_parameter(std::string_view name, std::optional<double> standard, double least,
                                                double most, std::string_view meaning) {

@@ -147,7 +147,7 @@ void read_antenna(TableReader& table, ModernSettings& settings, const std::files
     table.number("antenna_exponent", exponent, {0.1, 10}, {"the higher, the later the gain falls", "1.3; phone 1"});
     p.antenna = AntennaPattern(peak, drop, exponent);
     read_pattern(table, "antenna_table", {"CSV file [azimuth_deg,]elevation_deg,gain_dbic in place of these", "none"},
-                 PatternReading{settings, folder, AntennaPattern::read, p.antenna});
+                 PatternReading<AntennaPattern>{settings, folder, AntennaPattern::read, p.antenna});
 }
 
 void read_received_power(TableReader& table, ModernLinkParameters::ReceivedPower& p) {
@@ -164,7 +164,8 @@ void read_link(TableReader& table, ModernSettings& settings, const std::filesyst
     ModernLinkParameters& p = settings.propagation.link;
     read_received_power(table, p.received);
     read_pattern(table, "satellite_table", {"CSV file off_boresight_deg,eirp_dbw in place of these powers", "none"},
-                 PatternReading{settings, folder, read_satellite_pattern_file, p.satellite_pattern});
+                 PatternReading<std::vector<SatellitePowerPoint>>{settings, folder, read_satellite_pattern_file,
+                                                                  p.satellite_pattern});
     read_antenna(table, settings, folder);
     table.quantity("antenna_temperature_k", p.noise.antenna_temperature, {0, 1e5}, "noise temperature of the antenna");
     table.quantity("line_loss_db", p.noise.line_loss, {0, 100},

@@ -65,8 +65,8 @@ public:
     }
 
     void look() {
-        client->tell_time(now);
-        if (const auto belief = client->new_belief()) beliefs.push_back(*belief);
+        client->simulated_end()->tell_time(now);
+        if (const auto belief = client->simulated_end()->new_belief()) beliefs.push_back(*belief);
         const Bytes sent = client->read();
         for (const StreamPiece& piece : splitter.feed(sent))
             heard.push_back(piece);

@@ -14,7 +14,7 @@ std::vector<std::pair<Nanoseconds, Bytes>> sent(Nanoseconds look_every, Nanoseco
     std::vector<std::pair<Nanoseconds, Bytes>> sent;
     for (Nanoseconds at = first; at < 1500ms; at += look_every) {
         if (at == 700ms) client->write(encode_frame(MonVer::message_id, {}));
-        client->tell_time(bench_start + at);
+        client->simulated_end()->tell_time(bench_start + at);
         if (Bytes bytes = client->read(); !bytes.empty()) sent.emplace_back(at, std::move(bytes));
     }
     return sent;
@@ -29,10 +29,10 @@ TEST(ScriptedClient, ActsEveryTenMillisecondsHoweverOftenItIsLookedAt) {
 
 TEST(ScriptedClient, SaysWhenItActsNext) {
     const auto client = std::move(*open_client("naive-nmea"));
-    EXPECT_EQ(client->acts_at(bench_start), bench_start + 10ms);
-    EXPECT_EQ(client->acts_at(bench_start + 1ns), bench_start + 10ms);
-    EXPECT_EQ(client->acts_at(bench_start + 9'999'999ns), bench_start + 10ms);
-    EXPECT_EQ(client->acts_at(bench_start + 10ms), bench_start + 20ms);
+    EXPECT_EQ(client->simulated_end()->acts_at(bench_start), bench_start + 10ms);
+    EXPECT_EQ(client->simulated_end()->acts_at(bench_start + 1ns), bench_start + 10ms);
+    EXPECT_EQ(client->simulated_end()->acts_at(bench_start + 9'999'999ns), bench_start + 10ms);
+    EXPECT_EQ(client->simulated_end()->acts_at(bench_start + 10ms), bench_start + 20ms);
 }
 
 }  // namespace
