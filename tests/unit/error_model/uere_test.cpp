@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "receiver/error_model/selection.hpp"
 #include "support/model_sky.hpp"
 #include "support/oracle_table.hpp"
 #include "world/propagation/niell_troposphere_delay.hpp"

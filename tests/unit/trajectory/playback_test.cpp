@@ -8,6 +8,7 @@
 
 #include "base/geo/body_frame.hpp"
 #include "law_track.hpp"
+#include "motion/trajectory/recorded_path.hpp"
 
 namespace skyloop {
 namespace {
