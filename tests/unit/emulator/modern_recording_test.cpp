@@ -1,4 +1,5 @@
 // What a receiver that measures leaves behind: RINEX files that say what it measured, and every term in its column.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
