@@ -303,7 +303,8 @@ TEST(CityGml, DropsWrongPolygonsAndSaysSo) {
     EXPECT_THAT(file->warnings, ::testing::Contains(HasSubstr("4 surfaces")));
 }
 
-// Amersfoort by RDNAPTRANS2018 of the Dutch Kadaster: 155000, 463000, 0 is 52.155172897° N 5.387203657° E, 43.2551 m.
+// Amersfoort, a test point of RDNAPTRANS: 155000, 463000, 0 is 52.155172897° N 5.387203657°
+// E, 43.2551 m.
 TEST_F(CityHeightsTest, AgreeWithTheDutchTransformationToAMetre) {
     const auto file = read_citygml(gml_file(square_roof(154950, 462950, 0), "EPSG:7415"), settings_);
     ASSERT_TRUE(file) << file.error().message;
