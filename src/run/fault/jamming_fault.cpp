@@ -1,11 +1,10 @@
-#include "detail/jamming_fault.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
 #include "detail/arrival_edits.hpp"
+#include "detail/catalogue_parts.hpp"
 #include "detail/signal_selector.hpp"
 #include "world/gnss/constants.hpp"
 #include "world/gnss/interference.hpp"

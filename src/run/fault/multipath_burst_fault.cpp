@@ -1,8 +1,7 @@
-#include "detail/multipath_burst_fault.hpp"
-
 #include <cmath>
 #include <numbers>
 
+#include "detail/catalogue_parts.hpp"
 #include "detail/signal_selector.hpp"
 
 namespace skyloop {

@@ -11,7 +11,6 @@
 #include "base/core/gauss_markov.hpp"
 #include "detail/catalogue_parts.hpp"
 #include "detail/edit_shortcuts.hpp"
-#include "detail/report_faults.hpp"
 
 namespace skyloop {
 namespace {

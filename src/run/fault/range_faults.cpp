@@ -1,9 +1,8 @@
-#include "detail/range_faults.hpp"
-
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "detail/catalogue_parts.hpp"
 #include "detail/signal_selector.hpp"
 
 namespace skyloop {

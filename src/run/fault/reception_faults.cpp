@@ -3,8 +3,6 @@
 
 #include "detail/arrival_edits.hpp"
 #include "detail/catalogue_parts.hpp"
-#include "detail/jamming_fault.hpp"
-#include "detail/multipath_burst_fault.hpp"
 #include "detail/signal_selector.hpp"
 
 namespace skyloop {

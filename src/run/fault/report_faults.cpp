@@ -1,5 +1,3 @@
-#include "detail/report_faults.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

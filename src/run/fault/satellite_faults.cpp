@@ -6,7 +6,6 @@
 #include "detail/arrival_edits.hpp"
 #include "detail/catalogue_parts.hpp"
 #include "detail/false_place.hpp"
-#include "detail/range_faults.hpp"
 #include "detail/signal_selector.hpp"
 #include "world/gnss/constants.hpp"
 #include "world/gnss/earth_turn.hpp"
