@@ -41,7 +41,7 @@ struct FixSeries {
     [[nodiscard]] SignalStrengthByElevation signal_strength() const;
 };
 
-/// Reads a fix file, gzip-compressed or not. The format is known by its content:
+/// Reads a fix file, packed or not. The format is known by its content:
 ///  - receivers' output as read_observed() reads it; a sample from each epoch with a solution, or that says that it has
 ///    none. A fix is what has a place with a height, and is neither the time alone nor without a fix;
 ///  - a table with a header line that names latitude, longitude and height: fixes.csv (INTERFACE.md, section 3) or any
