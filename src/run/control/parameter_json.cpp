@@ -88,6 +88,12 @@ Json choices_json(const ParameterSpec& spec) {
     return std::vector<std::string>(spec.choices.begin(), spec.choices.end());
 }
 
+// Null where there is none.
+Json standard_json(const ParameterSpec& spec) {
+    const auto standard = spec.standard_value();
+    return standard ? to_json(*standard) : Json(nullptr);
+}
+
 }  // namespace
 
 Result<ParameterMap> parameters_from_json(std::string_view text) {
@@ -108,12 +114,6 @@ Result<ParameterMap> parameters_from_json(std::string_view text) {
 
 Json to_json(const ParameterValue& value) {
     return std::visit([](const auto& held) { return Json(held); }, value);
-}
-
-// Null where there is none.
-static Json standard_json(const ParameterSpec& spec) {
-    const auto standard = spec.standard_value();
-    return standard ? to_json(*standard) : Json(nullptr);
 }
 
 Json to_json(const ParameterSpec& spec) {
