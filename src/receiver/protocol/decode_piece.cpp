@@ -18,7 +18,7 @@ constexpr std::size_t rtcm3_frame_head = 3, rtcm3_frame_tail = 3;
 template <class Message>
 void list_message(const Message& found, DecodedMessage& message) {
     FieldLister lister(Message::field_names);
-    Message::fields(found, lister);
+    walk_fields(found, lister);
     message.fields = lister.take();
 }
 
@@ -67,7 +67,7 @@ template <class Message>
 void leave_out_extensions(DecodedMessage& message) {
     BaseFields base(Message::base_size);
     const Message any{};
-    Message::fields(any, base);
+    walk_fields(any, base);
     for (std::size_t i = base.count(); i < message.fields.size(); ++i)
         message.fields[i].value = {};
 }

@@ -1,8 +1,9 @@
 /// Payloads from field lists: a message names its fields once, and encoding, decoding, size and listing follow.
 ///
-/// A message has `template <class M, class V> static void fields(M& m, V& v)` that calls, in the order of the bytes,
-/// `v(m.a, m.b, …)` for numbers (little-endian; U1 … U8, I1 … I4, R4, R8, X1 …) and std::arrays of them,
-/// `v.count(m.items)` for a U1 that counts what `v.items(m.items)` later writes, `v.rest(m.items, least, most)` for
+/// The fields are the members of the struct, in their order: numbers (little-endian; U1 … U8, I1 … I4, R4, R8, X1 …),
+/// std::arrays and structs of them. A message with lists, a tail or odd sizes says itself how its bytes follow each
+/// other, in a `template <class M, class V> static void fields(M& m, V& v)` that calls, in the order of the bytes,
+/// `v(m.a, m.b, …)` for such members, `v.count(m.items)` for a U1 that counts what `v.items(m.items)` later writes, `v.rest(m.items, least, most)` for
 /// what fills the payload, `v.if_present(m.optional)` for a tail that older firmware leaves out and
 /// `v.sized(m.value, bytes)` for an integer of three bytes, or whose size another field gives. UBX, MSP, MAVLink and
 /// SBF use it.
@@ -20,11 +21,21 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
+#include "receiver/protocol/members.hpp"
 
 namespace skyloop {
 
 /// The most that a U1 counts; longer lists are written up to here.
 inline constexpr std::size_t most_items = 255;
+
+/// Shows all fields of m to v: in the order that `fields` tells, else in that of the members.
+template <class M, class V>
+void walk_fields(M& m, V& v) {
+    if constexpr (requires { std::remove_const_t<M>::fields(m, v); })
+        std::remove_const_t<M>::fields(m, v);
+    else
+        with_members(m, v);
+}
 
 namespace field_list {
 
@@ -78,7 +89,7 @@ private:
             put(field);
     }
     template <class T>
-    requires(!Number<T>) void put(const T& group) { T::fields(group, *this); }
+    requires(!Number<T>) void put(const T& group) { walk_fields(group, *this); }
 
     Bytes bytes_;
 };
@@ -143,7 +154,7 @@ private:
             pick(field);
     }
     template <class T>
-    requires(!Number<T>) void pick(T& group) { T::fields(group, *this); }
+    requires(!Number<T>) void pick(T& group) { walk_fields(group, *this); }
 
     ByteSpan left_;
     bool good_ = true;
@@ -155,7 +166,7 @@ private:
 template <class Message>
 Bytes encode_payload(const Message& message) {
     field_list::Writer writer;
-    Message::fields(message, writer);
+    walk_fields(message, writer);
     return writer.take();
 }
 
@@ -170,7 +181,7 @@ template <class Message>
 std::optional<Message> decode_payload(ByteSpan payload) {
     field_list::Reader reader(payload);
     Message message;
-    Message::fields(message, reader);
+    walk_fields(message, reader);
     if (!reader.complete()) return std::nullopt;
     return message;
 }
@@ -180,7 +191,7 @@ template <class Message>
 std::optional<Message> decode_front(ByteSpan payload) {
     field_list::Reader reader(payload);
     Message message;
-    Message::fields(message, reader);
+    walk_fields(message, reader);
     if (!reader.enough()) return std::nullopt;
     return message;
 }

@@ -104,7 +104,7 @@ private:
         add(name, list_value(fields, name));
     }
     template <class T>
-    requires(!field_list::Number<T>) void list(const T& group) { T::fields(group, *this); }
+    requires(!field_list::Number<T>) void list(const T& group) { walk_fields(group, *this); }
 
     template <class List>
     DecodedValue list_value(const List& list, const FieldName& name) {
@@ -124,7 +124,7 @@ private:
             return number_value(item, name);
         } else {
             FieldLister group(name.items.empty() ? std::string_view("value") : name.items);
-            T::fields(item, group);
+            walk_fields(item, group);
             fit_ = fit_ && group.names_fit();
             std::vector<DecodedField> fields = group.take();
             if (name.items.empty() && !fields.empty()) return std::move(fields.front().value);

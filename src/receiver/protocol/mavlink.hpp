@@ -77,11 +77,6 @@ struct MavlinkHeartbeat {
     std::uint8_t base_mode = 0;
     std::uint8_t system_status = 4;  ///< 4: active
     std::uint8_t mavlink_version = 3;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.custom_mode, m.type, m.autopilot, m.base_mode, m.system_status, m.mavlink_version);
-    }
 };
 
 /// COMMAND_LONG: asks a component to do something; what the parameters mean depends on the command (MAV_CMD).
@@ -97,12 +92,6 @@ struct MavlinkCommandLong {
     std::uint8_t target_system = 0;     ///< 0: all
     std::uint8_t target_component = 0;  ///< 0: all
     std::uint8_t confirmation = 0;      ///< how often it has been sent before
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7, m.command, m.target_system,
-          m.target_component, m.confirmation);
-    }
 };
 
 /// COMMAND_INT: as COMMAND_LONG, with a place in whole numbers.
@@ -123,12 +112,6 @@ struct MavlinkCommandInt {
     std::uint8_t frame = 0;
     std::uint8_t current = 0;
     std::uint8_t autocontinue = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.param1, m.param2, m.param3, m.param4, m.x, m.y, m.z, m.command, m.target_system, m.target_component,
-          m.frame, m.current, m.autocontinue);
-    }
 };
 
 /// COMMAND_ACK: what becomes of a command.
@@ -145,11 +128,6 @@ struct MavlinkCommandAck {
     std::int32_t result_param2 = 0;  ///< depends on the command
     std::uint8_t target_system = 0;  ///< of who has asked
     std::uint8_t target_component = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.command, m.result, m.progress, m.result_param2, m.target_system, m.target_component);
-    }
 };
 
 /// MAV_RESULT of common.xml, as far as it is used here.
@@ -183,13 +161,6 @@ struct MavlinkGpsInput {
     std::uint8_t fix_type = 0;  ///< 0 no receiver, 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed
     std::uint8_t satellites_visible = 0;
     std::uint16_t yaw = 0;  ///< 0.01 deg, 36000 for north; 0 unknown; an extension
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_usec, m.time_week_ms, m.lat, m.lon, m.alt, m.hdop, m.vdop, m.vn, m.ve, m.vd, m.speed_accuracy,
-          m.horiz_accuracy, m.vert_accuracy, m.ignore_flags, m.time_week, m.gps_id, m.fix_type, m.satellites_visible,
-          m.yaw);
-    }
 };
 
 /// GPS_RAW_INT: what an autopilot's receiver reports to the ground.
@@ -218,12 +189,6 @@ struct MavlinkGpsRawInt {
     std::uint32_t vel_acc = 0;       ///< mm/s
     std::uint32_t hdg_acc = 0;       ///< 1e-5 deg
     std::uint16_t yaw = 0;           ///< 0.01 deg, 36000 for north; 0 unknown
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_usec, m.lat, m.lon, m.alt, m.eph, m.epv, m.vel, m.cog, m.fix_type, m.satellites_visible,
-          m.alt_ellipsoid, m.h_acc, m.v_acc, m.vel_acc, m.hdg_acc, m.yaw);
-    }
 };
 
 /// GPS_RTCM_DATA: a piece of an RTCM stream on its way to a receiver.
@@ -236,11 +201,6 @@ struct MavlinkGpsRtcmData {
     std::uint8_t flags = 0;  ///< bits: 0 a fragment, 1-2 which, 3-7 of which message
     std::uint8_t length = 0;
     std::array<std::uint8_t, 180> data{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.flags, m.length, m.data);
-    }
 };
 
 /// The version 2 frame of a message.

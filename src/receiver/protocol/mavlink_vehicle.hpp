@@ -22,11 +22,6 @@ struct MavlinkSystemTime {
     static constexpr std::string_view field_names = "unix_time_s*1e-6!0 boot_time_s*1e-3";
     std::uint64_t time_unix_usec = 0;  ///< us since 1970, as POSIX counts; 0 unknown
     std::uint32_t time_boot_ms = 0;    ///< ms since the start
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_unix_usec, m.time_boot_ms);
-    }
 };
 
 /// ATTITUDE: as angles.
@@ -44,11 +39,6 @@ struct MavlinkAttitude {
     float rollspeed = 0;  ///< rad/s about the body's axes
     float pitchspeed = 0;
     float yawspeed = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_boot_ms, m.roll, m.pitch, m.yaw, m.rollspeed, m.pitchspeed, m.yawspeed);
-    }
 };
 
 /// ATTITUDE_QUATERNION: without the angles' poles.
@@ -65,11 +55,6 @@ struct MavlinkAttitudeQuaternion {
     float pitchspeed = 0;
     float yawspeed = 0;
     std::array<float, 4> repr_offset_q{};  ///< for a display of tail-sitters; all zero: none; an extension
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_boot_ms, m.q, m.rollspeed, m.pitchspeed, m.yawspeed, m.repr_offset_q);
-    }
 };
 
 /// LOCAL_POSITION_NED: the filter's place in metres from its origin (GPS_GLOBAL_ORIGIN).
@@ -87,11 +72,6 @@ struct MavlinkLocalPositionNed {
     float vx = 0;  ///< m/s
     float vy = 0;
     float vz = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_boot_ms, m.x, m.y, m.z, m.vx, m.vy, m.vz);
-    }
 };
 
 /// GLOBAL_POSITION_INT: the filter's place and velocity.
@@ -112,11 +92,6 @@ struct MavlinkGlobalPositionInt {
     std::int16_t vy = 0;            ///< cm/s east
     std::int16_t vz = 0;            ///< cm/s down
     std::uint16_t hdg = 0xFFFF;     ///< 0.01 deg, the vehicle's heading; 65535 unknown
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_boot_ms, m.lat, m.lon, m.alt, m.relative_alt, m.vx, m.vy, m.vz, m.hdg);
-    }
 };
 
 /// GPS_GLOBAL_ORIGIN: where local places count from.
@@ -130,11 +105,6 @@ struct MavlinkGpsGlobalOrigin {
     std::int32_t longitude = 0;   ///< 1e-7 deg
     std::int32_t altitude = 0;    ///< mm above mean sea level
     std::uint64_t time_usec = 0;  ///< us, of 1970 or of the start; an extension
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.latitude, m.longitude, m.altitude, m.time_usec);
-    }
 };
 
 /// SIM_STATE: a simulator's truth. ArduPilot puts 1e7 times the degrees into `lat` and `lon`.
@@ -167,12 +137,6 @@ struct MavlinkSimState {
     float vd = 0;
     std::int32_t lat_int = 0;  ///< 1e-7 deg; 0 unknown; this and what follows are extensions
     std::int32_t lon_int = 0;  ///< 1e-7 deg; 0 unknown
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.q, m.roll, m.pitch, m.yaw, m.xacc, m.yacc, m.zacc, m.xgyro, m.ygyro, m.zgyro, m.lat, m.lon, m.alt,
-          m.std_dev_horz, m.std_dev_vert, m.vn, m.ve, m.vd, m.lat_int, m.lon_int);
-    }
 };
 
 /// HIL_GPS: a simulated receiver's solution for an autopilot.
@@ -200,12 +164,6 @@ struct MavlinkHilGps {
     std::uint8_t satellites_visible = 0xFF;
     std::uint8_t id = 0;    ///< of the receiver, from 0; this and what follows are extensions
     std::uint16_t yaw = 0;  ///< 0.01 deg, 36000 for north; 0 unknown
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_usec, m.lat, m.lon, m.alt, m.eph, m.epv, m.vel, m.vn, m.ve, m.vd, m.cog, m.fix_type,
-          m.satellites_visible, m.id, m.yaw);
-    }
 };
 
 /// HIL_STATE_QUATERNION: a simulator's truth for an autopilot, and PX4's of its own simulation.
@@ -234,12 +192,6 @@ struct MavlinkHilStateQuaternion {
     std::int16_t xacc = 0;            ///< thousandths of g along the body's axes
     std::int16_t yacc = 0;
     std::int16_t zacc = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_usec, m.q, m.rollspeed, m.pitchspeed, m.yawspeed, m.lat, m.lon, m.alt, m.vx, m.vy, m.vz,
-          m.ind_airspeed, m.true_airspeed, m.xacc, m.yacc, m.zacc);
-    }
 };
 
 /// ODOMETRY: place and motion in frames that the message names.
@@ -269,12 +221,6 @@ struct MavlinkOdometry {
     std::uint8_t reset_counter = 0;    ///< one more with every jump; this and what follows are extensions
     std::uint8_t estimator_type = 0;
     std::int8_t quality = 0;  ///< %; 0 unknown, −1 failed
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_usec, m.x, m.y, m.z, m.q, m.vx, m.vy, m.vz, m.rollspeed, m.pitchspeed, m.yawspeed, m.pose_covariance,
-          m.velocity_covariance, m.frame_id, m.child_frame_id, m.reset_counter, m.estimator_type, m.quality);
-    }
 };
 
 }  // namespace skyloop

@@ -72,13 +72,6 @@ struct MspSensorGps {
     std::uint8_t hour = 0;
     std::uint8_t minute = 0;
     std::uint8_t second = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.instance, m.gps_week, m.ms_tow, m.fix_type, m.satellites, m.h_acc, m.v_acc, m.speed_acc, m.dop, m.longitude,
-          m.latitude, m.msl_altitude, m.vel_north, m.vel_east, m.vel_down, m.course, m.true_yaw, m.year, m.month, m.day,
-          m.hour, m.minute, m.second);
-    }
 };
 
 /// MSP_SET_RAW_GPS: the older, short form, 14 bytes in a version 1 frame.
@@ -93,11 +86,6 @@ struct MspSetRawGps {
     std::int32_t longitude = 0;  ///< 1e-7 deg
     std::uint16_t altitude = 0;  ///< m above mean sea level, none below it
     std::uint16_t speed = 0;     ///< cm/s
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.fix, m.satellites, m.latitude, m.longitude, m.altitude, m.speed);
-    }
 };
 
 /// The frames of the two messages.

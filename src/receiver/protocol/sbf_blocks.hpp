@@ -20,11 +20,6 @@ namespace skyloop {
 struct SbfTime {
     std::uint32_t tow = 0xFFFFFFFF;  ///< ms, GPS time of week
     std::uint16_t wnc = 0xFFFF;      ///< GPS week, not wrapped
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.tow, m.wnc);
-    }
 };
 
 /// What revision 1 (latency, accuracies) and 2 (misc) added to PVTGeodetic, with the padding.
@@ -34,11 +29,6 @@ struct SbfPvtAccuracy {
     std::uint16_t v_accuracy = 0xFFFF;  ///< 0.01 m, 2 σ
     std::uint8_t misc = 0;
     std::uint8_t padding = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.latency, m.h_accuracy, m.v_accuracy, m.misc, m.padding);
-    }
 };
 
 /// PVTGeodetic: position, velocity, time.
@@ -106,11 +96,6 @@ struct SbfPosCovGeodetic {
     std::uint8_t mode = 0;
     std::uint8_t error = 1;
     SbfCovariance covariance = no_sbf_covariance;  ///< m²; north, east, up, clock
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.mode, m.error, m.covariance);
-    }
 };
 
 /// VelCovGeodetic: covariance of the velocity north, east, up and of the clock's drift.
@@ -124,11 +109,6 @@ struct SbfVelCovGeodetic {
     std::uint8_t mode = 0;
     std::uint8_t error = 1;
     SbfCovariance covariance = no_sbf_covariance;  ///< m²/s²
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.mode, m.error, m.covariance);
-    }
 };
 
 /// DOP and protection levels. A DOP of 0 is none.
@@ -148,11 +128,6 @@ struct SbfDop {
     std::uint16_t vdop = 0;
     float hpl = static_cast<float>(sbf_nothing);  ///< m, horizontal protection level
     float vpl = static_cast<float>(sbf_nothing);
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.num_sv, m.reserved, m.pdop, m.tdop, m.hdop, m.vdop, m.hpl, m.vpl);
-    }
 };
 
 /// AttEuler: attitude from several antennas.
@@ -174,12 +149,6 @@ struct SbfAttEuler {
     float pitch_rate = static_cast<float>(sbf_nothing);
     float roll_rate = static_cast<float>(sbf_nothing);
     float heading_rate = static_cast<float>(sbf_nothing);
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.num_sv, m.error, m.mode, m.reserved, m.heading, m.pitch, m.roll, m.pitch_rate, m.roll_rate,
-          m.heading_rate);
-    }
 };
 
 /// One satellite of ChannelStatus with its one antenna. The statuses are two bits for each signal of its system.
@@ -198,12 +167,6 @@ struct SbfChannel {
     std::uint16_t tracking_status = 0;  ///< of a signal: 0 idle, 1 search, 2 sync, 3 tracking
     std::uint16_t pvt_status = 0;       ///< of a signal: 0 not used, 1 waits for its ephemeris, 2 used, 3 rejected
     std::uint16_t pvt_info = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.svid, m.freq_nr, m.reserved1, m.azimuth, m.health_status, m.elevation, m.antennas, m.rx_channel,
-          m.reserved2, m.antenna, m.reserved3, m.tracking_status, m.pvt_status, m.pvt_info);
-    }
 };
 
 /// ChannelStatus: the satellites of a receiver with one antenna. Blocks whose channels have none or several, or longer
@@ -238,11 +201,6 @@ struct SbfFrontEnd {
     std::int8_t gain = -128;  ///< dB, -128 unknown
     std::uint8_t sample_variance = 0;
     std::uint8_t blanking = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.id, m.gain, m.sample_variance, m.blanking);
-    }
 };
 
 /// ReceiverStatus: load, state and errors.
@@ -281,12 +239,6 @@ struct SbfAuxAntenna {
     std::uint8_t antenna = 1;
     double delta_east = sbf_nothing, delta_north = sbf_nothing, delta_up = sbf_nothing;  ///< m
     double vel_east = sbf_nothing, vel_north = sbf_nothing, vel_up = sbf_nothing;        ///< m/s
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.num_sv, m.error, m.ambiguity_type, m.antenna, m.delta_east, m.delta_north, m.delta_up, m.vel_east,
-          m.vel_north, m.vel_up);
-    }
 };
 
 /// AuxAntPositions: where the other antennas of an attitude are. Blocks of longer parts are not read.
@@ -319,11 +271,6 @@ struct SbfEndOfPvt {
     static constexpr std::string_view message_name = "EndOfPVT";
     static constexpr std::string_view field_names = "tow_s*1e-3!4294967295 week!65535";
     SbfTime time;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time);
-    }
 };
 
 /// The whole block of a message.

@@ -44,13 +44,6 @@ struct SbfPvtCartesian {
     std::uint8_t num_bases = 0;
     std::uint16_t ppp_info = 0;
     SbfPvtAccuracy accuracy;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.mode, m.error, m.x, m.y, m.z, m.undulation, m.vx, m.vy, m.vz, m.course, m.clock_bias, m.clock_drift,
-          m.time_system, m.datum, m.num_sv, m.wa_corr_info, m.reference_id, m.mean_corr_age, m.signal_info,
-          m.alert_flag, m.num_bases, m.ppp_info, m.accuracy);
-    }
 };
 
 /// PosCovCartesian: covariance of x, y, z and clock.
@@ -63,11 +56,6 @@ struct SbfPosCovCartesian {
     std::uint8_t mode = 0;
     std::uint8_t error = 1;
     SbfCovariance covariance = no_sbf_covariance;  ///< m²
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.mode, m.error, m.covariance);
-    }
 };
 
 /// VelCovCartesian: covariance of the velocity along x, y, z and of the clock's drift.
@@ -81,11 +69,6 @@ struct SbfVelCovCartesian {
     std::uint8_t mode = 0;
     std::uint8_t error = 1;
     SbfCovariance covariance = no_sbf_covariance;  ///< m²/s²
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.mode, m.error, m.covariance);
-    }
 };
 
 /// The base line to one base station in ECEF; the rest as in BaseVectorGeod.
@@ -103,12 +86,6 @@ struct SbfBaseVectorXyz {
     std::uint16_t reference_id = 0xFFFF;
     std::uint16_t corr_age = 0xFFFF;  ///< 0.01 s
     std::uint32_t signal_info = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.num_sv, m.error, m.mode, m.misc, m.delta_x, m.delta_y, m.delta_z, m.vel_x, m.vel_y, m.vel_z, m.azimuth,
-          m.elevation, m.reference_id, m.corr_age, m.signal_info);
-    }
 };
 
 /// BaseVectorCart. Blocks of longer parts are not read.
@@ -142,11 +119,6 @@ struct SbfVisibleSatellite {
     std::int16_t elevation = -32768;  ///< 0.01 deg
     std::uint8_t rise_set = 255;      ///< 0 setting, 1 rising, 255 unknown
     std::uint8_t known_by = 255;      ///< 1 almanac, 2 ephemeris, 255 unknown
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.svid, m.freq_nr, m.azimuth, m.elevation, m.rise_set, m.known_by);
-    }
 };
 
 /// SatVisibility: where the satellites above the horizon stand. Blocks of longer parts are not read.
@@ -203,14 +175,6 @@ struct SbfReceiverSetup {
     std::uint8_t receiver_index = 0;
     std::array<char, 3> country_code{};
     std::array<char, 21> reserved2{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.reserved, m.marker_name, m.marker_number, m.observer, m.agency, m.rx_serial_number, m.rx_name,
-          m.rx_version, m.antenna_serial_number, m.antenna_type, m.delta_h, m.delta_e, m.delta_n, m.marker_type,
-          m.gnss_fw_version, m.product_name, m.latitude, m.longitude, m.height, m.station_code, m.monument_index,
-          m.receiver_index, m.country_code, m.reserved2);
-    }
 };
 
 }  // namespace skyloop

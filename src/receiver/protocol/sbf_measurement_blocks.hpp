@@ -25,12 +25,6 @@ struct SbfOtherSignal {
     std::uint16_t code_offset_lsb = 0;     ///< 0.001 m, beyond the first signal's range
     std::uint16_t carrier_lsb = 0;         ///< 0.001 cycles, beyond this signal's range
     std::uint16_t doppler_offset_lsb = 0;  ///< 0.0001 Hz, beyond the first signal's in this signal's cycles
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.type, m.lock_time, m.cn0, m.offsets_msb, m.carrier_msb, m.obs_info, m.code_offset_lsb, m.carrier_lsb,
-          m.doppler_offset_lsb);
-    }
 };
 
 /// A satellite with its first signal (MeasEpochChannelType1).
@@ -99,12 +93,6 @@ struct SbfSignalExtra {
     std::int8_t carrier_multipath = 0;        ///< 1/512 cycles
     std::uint8_t info = 0;
     std::uint8_t misc = 0;  ///< bits: 0-2 of C/N0, 0.03125 dB-Hz; 3-7 signal − 32
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.rx_channel, m.type, m.multipath_correction, m.smoothing_correction, m.code_variance, m.carrier_variance,
-          m.lock_time, m.losses, m.carrier_multipath, m.info, m.misc);
-    }
 };
 
 /// MeasExtra: what MeasEpoch leaves out. Blocks of longer parts are not read.
@@ -138,11 +126,6 @@ struct SbfEndOfMeas {
     static constexpr std::string_view message_name = "EndOfMeas";
     static constexpr std::string_view field_names = "tow_s*1e-3!4294967295 week!65535";
     SbfTime time;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time);
-    }
 };
 
 /// Whether the parts of a MeasEpoch are as long as those known here.

@@ -49,11 +49,6 @@ struct SbfRawPage {
     std::uint8_t freq_nr = 0;        ///< of GLONASS: channel + 8
     std::uint8_t rx_channel = 0;
     std::array<std::uint32_t, Words> words{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.svid, m.crc_passed, m.viterbi_count, m.source, m.freq_nr, m.rx_channel, m.words);
-    }
 };
 using SbfGpsRawCa = SbfRawPage<4017, 10>;
 /// An even and an odd page of I/NAV: 114 bits, without the tail, and 120.
@@ -80,12 +75,6 @@ struct SbfKeplerOrbit {
     double omega = 0;
     float omega_dot = 0;  ///< semicircles/s
     float idot = 0;       ///< semicircles/s
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.c_rs, m.delta_n, m.m_0, m.c_uc, m.e, m.c_us, m.sqrt_a, m.toe, m.c_ic, m.omega_0, m.c_is, m.i_0, m.c_rc,
-          m.omega, m.omega_dot, m.idot);
-    }
 };
 
 /// GPSNav and QZSNav: the record of subframes 1 to 3. Weeks are modulo 1024.
@@ -115,12 +104,6 @@ struct SbfLnavRecord {
     float af2 = 0, af1 = 0, af0 = 0;
     SbfKeplerOrbit orbit;
     std::uint16_t toc_week = 0, toe_week = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.svid, m.reserved, m.week, m.code_on_l2, m.ura, m.health, m.l2_data_flag, m.iodc, m.iode2, m.iode3,
-          m.fit_interval_flag, m.reserved2, m.tgd, m.toc, m.af2, m.af1, m.af0, m.orbit, m.toc_week, m.toe_week);
-    }
 };
 using SbfGpsNav = SbfLnavRecord<5891>;
 using SbfQzsNav = SbfLnavRecord<4095>;
@@ -148,12 +131,6 @@ struct SbfBdsNav {
     float af2 = 0, af1 = 0, af0 = 0;
     SbfKeplerOrbit orbit;
     std::uint16_t toc_week = 0, toe_week = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.svid, m.reserved, m.week, m.ura, m.health, m.aodc, m.aode, m.reserved2, m.tgd1, m.tgd2, m.toc,
-          m.af2, m.af1, m.af0, m.orbit, m.toc_week, m.toe_week);
-    }
 };
 
 /// GALNav: the record of I/NAV or F/NAV. Weeks are GPS ones, modulo 4096.
@@ -187,14 +164,6 @@ struct SbfGalNav {
     float bgd_l1_e5b = static_cast<float>(sbf_nothing);                     ///< s
     float bgd_l1a_e6a = static_cast<float>(sbf_nothing);
     std::uint8_t cnav_encrypted = 255;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.svid, m.source, m.sqrt_a, m.m_0, m.e, m.i_0, m.omega, m.omega_0, m.omega_dot, m.idot, m.delta_n,
-          m.c_uc, m.c_us, m.c_rc, m.c_rs, m.c_ic, m.c_is, m.toe, m.toc, m.af2, m.af1, m.af0, m.toe_week, m.toc_week,
-          m.iod_nav, m.health, m.health_prs, m.sisa_l1_e5a, m.sisa_l1_e5b, m.sisa_l1a_e6a, m.bgd_l1_e5a, m.bgd_l1_e5b,
-          m.bgd_l1a_e6a, m.cnav_encrypted);
-    }
 };
 
 /// GLONav: the state vector of strings 1 to 5.
@@ -225,12 +194,6 @@ struct SbfGloNav {
     std::uint16_t day = 0;       ///< N_T, within four years
     std::uint16_t accuracy = 0;  ///< 0.01 m, F_T
     std::uint8_t c = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.svid, m.freq_nr, m.position, m.velocity, m.acceleration, m.gamma, m.tau, m.dtau, m.toe, m.toe_week,
-          m.p1, m.p2, m.age, m.health, m.tb, m.m, m.p, m.l, m.p4, m.day, m.accuracy, m.c);
-    }
 };
 
 }  // namespace skyloop

@@ -28,11 +28,6 @@ struct SbfAttCovEuler {
     float heading_pitch = static_cast<float>(sbf_nothing);
     float heading_roll = static_cast<float>(sbf_nothing);
     float pitch_roll = static_cast<float>(sbf_nothing);
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.reserved, m.error, m.heading, m.pitch, m.roll, m.heading_pitch, m.heading_roll, m.pitch_roll);
-    }
 };
 
 /// The base line to one base station.
@@ -50,12 +45,6 @@ struct SbfBaseVector {
     std::uint16_t reference_id = 0xFFFF;
     std::uint16_t corr_age = 0xFFFF;  ///< 0.01 s
     std::uint32_t signal_info = 0;    ///< as of PVTGeodetic
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.num_sv, m.error, m.mode, m.misc, m.delta_east, m.delta_north, m.delta_up, m.vel_east, m.vel_north, m.vel_up,
-          m.azimuth, m.elevation, m.reference_id, m.corr_age, m.signal_info);
-    }
 };
 
 /// BaseVectorGeod: base lines in east, north and up. Blocks of longer parts are not read.
@@ -86,11 +75,6 @@ struct SbfIndicator {
     /// Bits 0-7: 0 overall, 1 signals of the main antenna, 11 its radio power, 21 head room of the processor, 30 the
     /// base station's measurements; 8-11: 0 bad … 10 good.
     std::uint16_t value = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.value);
-    }
 };
 
 /// QualityInd: how well it goes.
@@ -119,11 +103,6 @@ struct SbfRfBand {
     std::uint16_t bandwidth = 0;  ///< kHz
     std::uint8_t info = 0;        ///< bits 0-3: 1 suppressed by the user, 2 mitigated, 8 interference; 6-7 antenna
     std::uint8_t padding = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.frequency, m.bandwidth, m.info, m.padding);
-    }
 };
 
 /// RFStatus: interference by band, and signs of spoofing. Blocks of longer parts are not read.
@@ -161,12 +140,6 @@ struct SbfGalAuthStatus {
     std::uint16_t osnma_status = 0;  ///< bits 0-2: 0 disabled
     float trusted_time_delta = static_cast<float>(sbf_nothing);
     std::uint64_t galileo_active = 0, galileo_authentic = 0, gps_active = 0, gps_authentic = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.osnma_status, m.trusted_time_delta, m.galileo_active, m.galileo_authentic, m.gps_active,
-          m.gps_authentic);
-    }
 };
 
 /// ReceiverTime: UTC.
@@ -182,11 +155,6 @@ struct SbfReceiverTime {
     std::int8_t month = -128, day = -128, hour = -128, minute = -128, second = -128;
     std::int8_t leap_seconds = -128;  ///< GPS time minus UTC
     std::uint8_t sync_level = 0;      ///< bits: 0 week, 1 time of week, 2 fine time
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time, m.year, m.month, m.day, m.hour, m.minute, m.second, m.leap_seconds, m.sync_level);
-    }
 };
 
 /// EndOfAtt: nothing more of an epoch's attitude follows.
@@ -196,11 +164,6 @@ struct SbfEndOfAtt {
     static constexpr std::string_view message_name = "EndOfAtt";
     static constexpr std::string_view field_names = "tow_s*1e-3!4294967295 week!65535";
     SbfTime time;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time);
-    }
 };
 
 }  // namespace skyloop

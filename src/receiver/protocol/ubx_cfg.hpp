@@ -18,11 +18,6 @@ namespace skyloop {
 struct CfgPrtPoll {
     static constexpr UbxMessageId message_id{0x06, 0x00};
     std::uint8_t port_id = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.port_id);
-    }
 };
 
 /// One port of CFG-PRT.
@@ -36,12 +31,6 @@ struct CfgPrtItem {
     std::uint16_t out_proto_mask = 0;  ///< bits: 0 UBX, 1 NMEA, 5 RTCM3
     std::uint16_t flags = 0;           ///< bit 1: extended timeout
     std::array<std::uint8_t, 2> reserved1{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.port_id, m.reserved0, m.tx_ready, m.mode, m.baud_rate, m.in_proto_mask, m.out_proto_mask, m.flags,
-          m.reserved1);
-    }
 };
 
 /// CFG-PRT: ports, one or more in one message.
@@ -60,11 +49,6 @@ struct CfgMsgPoll {
     static constexpr UbxMessageId message_id{0x06, 0x01};
     std::uint8_t message_class = 0;
     std::uint8_t id = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.message_class, m.id);
-    }
 };
 
 /// CFG-MSG for the port it arrives on.
@@ -73,11 +57,6 @@ struct CfgMsgCurrentPort {
     std::uint8_t message_class = 0;
     std::uint8_t id = 0;
     std::uint8_t rate = 0;  ///< epochs per message, 0 off
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.message_class, m.id, m.rate);
-    }
 };
 
 /// CFG-MSG for all ports.
@@ -86,11 +65,6 @@ struct CfgMsg {
     std::uint8_t message_class = 0;
     std::uint8_t id = 0;
     std::array<std::uint8_t, 6> rates{};  ///< epochs per message on DDC, UART1, UART2, USB, SPI; the last is reserved
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.message_class, m.id, m.rates);
-    }
 };
 
 /// CFG-RATE: rates of measurement and navigation.
@@ -99,11 +73,6 @@ struct CfgRate {
     std::uint16_t meas_rate = 0;  ///< ms
     std::uint16_t nav_rate = 0;   ///< measurements per solution
     std::uint16_t time_ref = 0;   ///< 0 UTC, 1 GPS, 2 GLONASS, 3 BeiDou, 4 Galileo
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.meas_rate, m.nav_rate, m.time_ref);
-    }
 };
 
 /// CFG-NAV5: settings of the navigation; only the groups in the mask count.
@@ -128,13 +97,6 @@ struct CfgNav5 {
     std::uint16_t static_hold_max_dist = 0;  ///< m
     std::uint8_t utc_standard = 0;
     std::array<std::uint8_t, 5> reserved1{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.mask, m.dyn_model, m.fix_mode, m.fixed_alt, m.fixed_alt_var, m.min_elev, m.dr_limit, m.p_dop, m.t_dop,
-          m.p_acc, m.t_acc, m.static_hold_thresh, m.dgnss_timeout, m.cno_thresh_num_svs, m.cno_thresh, m.reserved0,
-          m.static_hold_max_dist, m.utc_standard, m.reserved1);
-    }
 };
 
 /// One system of CFG-GNSS.
@@ -144,11 +106,6 @@ struct CfgGnssItem {
     std::uint8_t max_trk_ch = 0;
     std::uint8_t reserved = 0;
     std::uint32_t flags = 0;  ///< bits: 0 enabled, 16-23 signals
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.gnss_id, m.res_trk_ch, m.max_trk_ch, m.reserved, m.flags);
-    }
 };
 
 /// CFG-GNSS: systems and their channels.
@@ -188,11 +145,6 @@ struct CfgRst {
     std::uint16_t nav_bbr_mask = 0;  ///< what is forgotten: 0 hot, 1 warm, 0xFFFF cold
     std::uint8_t reset_mode = 0;
     std::uint8_t reserved = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.nav_bbr_mask, m.reset_mode, m.reserved);
-    }
 };
 
 }  // namespace skyloop

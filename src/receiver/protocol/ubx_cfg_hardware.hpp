@@ -27,12 +27,6 @@ struct CfgTp5 {
     std::int32_t user_config_delay = 0;      ///< ns
     std::uint32_t flags = 0;  ///< bits: 0 active, 1 lock, 2 other set when locked, 3 isFreq, 4 isLength, 5 align, 6
                               ///< rising, 7-10 time grid, 11-13 sync mode
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.tp_idx, m.version, m.reserved0, m.ant_cable_delay, m.rf_group_delay, m.freq_period, m.freq_period_lock,
-          m.pulse_len_ratio, m.pulse_len_ratio_lock, m.user_config_delay, m.flags);
-    }
 };
 
 /// CFG-ITFM: the monitor of jamming.
@@ -41,11 +35,6 @@ struct CfgItfm {
     std::uint32_t config = 0;  ///< bits: 0-3 broadband threshold dB, 4-8 tone threshold dB, 9-30 fixed, 31 enabled
     std::uint32_t config2 =
         0;  ///< bits: 0-11 fixed, 12-13 antenna (0 unknown, 1 passive, 2 active), 14 auxiliary bands
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.config, m.config2);
-    }
 };
 
 /// CFG-PMS: power modes for simple needs.
@@ -56,11 +45,6 @@ struct CfgPms {
     std::uint16_t period = 0;            ///< s, of interval
     std::uint16_t on_time = 0;           ///< s, of interval
     std::array<std::uint8_t, 2> reserved0{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.power_setup_value, m.period, m.on_time, m.reserved0);
-    }
 };
 
 /// CFG-RXM: power save on and off.
@@ -68,11 +52,6 @@ struct CfgRxm {
     static constexpr UbxMessageId message_id{0x06, 0x11};
     std::uint8_t reserved0 = 8;
     std::uint8_t lp_mode = 0;  ///< 0 and 4 continuous, 1 power save
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.reserved0, m.lp_mode);
-    }
 };
 
 /// CFG-ANT: the supply of the antenna.
@@ -80,11 +59,6 @@ struct CfgAnt {
     static constexpr UbxMessageId message_id{0x06, 0x13};
     std::uint16_t flags = 0;  ///< bits: 0 supply, 1 short detection, 2 open detection, 3 off when short, 4 recovers
     std::uint16_t pins = 0;   ///< bits: 0-4 switch, 5-9 short, 10-14 open, 15 take the pins
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.flags, m.pins);
-    }
 };
 
 /// CFG-LOGFILTER: which positions are logged.
@@ -96,11 +70,6 @@ struct CfgLogfilter {
     std::uint16_t time_threshold = 0;      ///< s
     std::uint16_t speed_threshold = 0;     ///< m/s
     std::uint32_t position_threshold = 0;  ///< m
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.flags, m.min_interval, m.time_threshold, m.speed_threshold, m.position_threshold);
-    }
 };
 
 /// CFG-PM2: how power is saved (protocol versions 18 to 22).
@@ -120,12 +89,6 @@ struct CfgPm2 {
     std::uint16_t min_acq_time = 0;   ///< s
     std::array<std::uint8_t, 20> reserved2{};
     std::uint32_t extint_inactivity = 0;  ///< ms
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved0, m.max_startup_state_dur, m.reserved1, m.flags, m.update_period, m.search_period,
-          m.grid_offset, m.on_time, m.min_acq_time, m.reserved2, m.extint_inactivity);
-    }
 };
 
 /// CFG-PWR: the state that the receiver is to be in (F9 interface description, HPG 1.10).
@@ -134,11 +97,6 @@ struct CfgPwr {
     std::uint8_t version = 1;  ///< 1
     std::array<std::uint8_t, 3> reserved0{};
     std::uint32_t state = 0;  ///< of PowerStateWord
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved0, m.state);
-    }
 };
 
 /// The states of CFG-PWR: four letters each.
@@ -149,11 +107,6 @@ struct UpdSos {
     static constexpr UbxMessageId message_id{0x09, 0x14};
     std::uint8_t cmd = 0;  ///< 0 create a backup, 1 clear it
     std::array<std::uint8_t, 3> reserved0{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.cmd, m.reserved0);
-    }
 };
 
 /// UPD-SOS, an answer.
@@ -163,11 +116,6 @@ struct UpdSosStatus {
     std::array<std::uint8_t, 3> reserved0{};
     std::uint8_t response = 0;  ///< of cmd 2: 0 no, 1 yes; of cmd 3: 0 unknown, 1 failed, 2 restored, 3 no backup
     std::array<std::uint8_t, 3> reserved1{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.cmd, m.reserved0, m.response, m.reserved1);
-    }
 };
 
 }  // namespace skyloop

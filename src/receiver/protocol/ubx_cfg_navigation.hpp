@@ -36,13 +36,6 @@ struct CfgNavx5 {
     std::uint16_t aop_orb_max_err = 0;  ///< m
     std::array<std::uint8_t, 7> reserved5{};
     std::uint8_t use_adr = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.mask1, m.mask2, m.reserved0, m.min_svs, m.max_svs, m.min_cno, m.reserved1, m.ini_fix_3d,
-          m.reserved2, m.ack_aiding, m.wkn_rollover, m.sig_atten_comp_mode, m.reserved3, m.use_ppp, m.aop_cfg,
-          m.reserved4, m.aop_orb_max_err, m.reserved5, m.use_adr);
-    }
 };
 
 /// CFG-SBAS: satellite-based augmentation.
@@ -53,11 +46,6 @@ struct CfgSbas {
     std::uint8_t max_sbas = 0;
     std::uint8_t scan_mode2 = 0;   ///< bit i: PRN 152 + i
     std::uint32_t scan_mode1 = 0;  ///< bit i: PRN 120 + i; all zero: any
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.mode, m.usage, m.max_sbas, m.scan_mode2, m.scan_mode1);
-    }
 };
 
 /// CFG-ODO: odometer and low-speed course.
@@ -74,12 +62,6 @@ struct CfgOdo {
     std::uint8_t vel_lp_gain = 0;
     std::uint8_t cog_lp_gain = 0;
     std::array<std::uint8_t, 2> reserved3{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved0, m.flags, m.odo_cfg, m.reserved1, m.cog_max_speed, m.cog_max_pos_acc, m.reserved2,
-          m.vel_lp_gain, m.cog_lp_gain, m.reserved3);
-    }
 };
 
 /// CFG-DGNSS: how far a rover resolves ambiguities.
@@ -87,11 +69,6 @@ struct CfgDgnss {
     static constexpr UbxMessageId message_id{0x06, 0x70};
     std::uint8_t dgnss_mode = 0;  ///< 2 float, 3 fixed
     std::array<std::uint8_t, 3> reserved0{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.dgnss_mode, m.reserved0);
-    }
 };
 
 /// CFG-DAT as it is set: a datum of the user's.
@@ -102,11 +79,6 @@ struct CfgDatSet {
     std::array<float, 3> shift{};     ///< m, X, Y, Z
     std::array<float, 3> rotation{};  ///< arc seconds
     float scale = 0;                  ///< ppm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.maj_a, m.flat, m.shift, m.rotation, m.scale);
-    }
 };
 
 /// CFG-DAT as it is told.
@@ -119,11 +91,6 @@ struct CfgDat {
     std::array<float, 3> shift{};
     std::array<float, 3> rotation{};
     float scale = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.datum_num, m.datum_name, m.maj_a, m.flat, m.shift, m.rotation, m.scale);
-    }
 };
 
 /// One circle of CFG-GEOFENCE.
@@ -131,11 +98,6 @@ struct CfgGeofenceItem {
     std::int32_t lat = 0;      ///< 1e-7 deg, of the centre
     std::int32_t lon = 0;      ///< 1e-7 deg
     std::uint32_t radius = 0;  ///< cm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.lat, m.lon, m.radius);
-    }
 };
 
 /// CFG-GEOFENCE: circles whose inside and outside NAV-GEOFENCE tells.
@@ -172,12 +134,6 @@ struct CfgTmode3 {
     std::uint32_t svin_min_dur = 0;    ///< s
     std::uint32_t svin_acc_limit = 0;  ///< 0.1 mm
     std::array<std::uint8_t, 8> reserved2{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved0, m.flags, m.position, m.position_hp, m.reserved1, m.fixed_pos_acc, m.svin_min_dur,
-          m.svin_acc_limit, m.reserved2);
-    }
 };
 
 }  // namespace skyloop

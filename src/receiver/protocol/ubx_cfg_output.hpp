@@ -17,11 +17,6 @@ struct CfgInfItem {
     std::uint8_t protocol_id = 0;  ///< 0 UBX, 1 NMEA
     std::array<std::uint8_t, 3> reserved0{};
     std::array<std::uint8_t, 6> masks{};  ///< DDC, UART1, UART2, USB, SPI, reserved; bits: 0 error, 1 warning, 2 notice
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.protocol_id, m.reserved0, m.masks);
-    }
 };
 
 /// CFG-INF: which texts go out, one or more protocols in one message.
@@ -41,11 +36,6 @@ struct CfgNmeaCore {
     std::uint8_t nmea_version = 0;  ///< 0x21 2.1, 0x23 2.3, 0x40 4.0, 0x41 4.10, 0x4B 4.11
     std::uint8_t num_sv = 0;        ///< listed satellites at most; 0 all
     std::uint8_t flags = 0;         ///< bits: 0 compat, 1 consider, 2 limit82, 3 highPrec
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.filter, m.nmea_version, m.num_sv, m.flags);
-    }
 };
 
 /// What came to it with u-blox 7.
@@ -55,22 +45,12 @@ struct CfgNmeaExtension {
     std::uint8_t main_talker_id = 0;   ///< 0 by system, 1 GP, 2 GL, 3 GN, 4 GA, 5 GB, 7 GQ
     std::uint8_t gsv_talker_id = 0;    ///< 0 by system, 1 as the main one
     std::uint8_t version = 0;          ///< 0 in the form of 12 bytes, 1 in that of 20
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.gnss_to_filter, m.sv_numbering, m.main_talker_id, m.gsv_talker_id, m.version);
-    }
 };
 
 /// CFG-NMEA of u-blox 5 and 6, 4 bytes.
 struct CfgNmeaShort {
     static constexpr UbxMessageId message_id{0x06, 0x17};
     CfgNmeaCore core;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.core);
-    }
 };
 
 /// CFG-NMEA of u-blox 7 (version 0), 12 bytes.
@@ -78,11 +58,6 @@ struct CfgNmeaV0 {
     static constexpr UbxMessageId message_id{0x06, 0x17};
     CfgNmeaCore core;
     CfgNmeaExtension extension;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.core, m.extension);
-    }
 };
 
 /// CFG-NMEA from M8 on (version 1), 20 bytes.
@@ -92,11 +67,6 @@ struct CfgNmea {
     CfgNmeaExtension extension;
     std::array<std::uint8_t, 2> bds_talker_id{};  ///< two letters; zeros: as the standard says
     std::array<std::uint8_t, 6> reserved1{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.core, m.extension, m.bds_talker_id, m.reserved1);
-    }
 };
 
 /// CFG-USB: how the receiver shows itself on USB.
@@ -110,12 +80,6 @@ struct CfgUsb {
     std::array<std::uint8_t, 32> vendor_string{};
     std::array<std::uint8_t, 32> product_string{};
     std::array<std::uint8_t, 32> serial_number{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.vendor_id, m.product_id, m.reserved0, m.power_consumption, m.flags, m.vendor_string, m.product_string,
-          m.serial_number);
-    }
 };
 
 }  // namespace skyloop

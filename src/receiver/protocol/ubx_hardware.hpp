@@ -36,12 +36,6 @@ struct MonHwPins {
     std::uint32_t pin_irq = 0;
     std::uint32_t pull_h = 0;
     std::uint32_t pull_l = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.pin_sel, m.pin_bank, m.pin_dir, m.pin_val, m.noise_per_ms, m.agc_cnt, m.a_status, m.a_power, m.flags,
-          m.reserved0, m.used_mask, m.vp, m.jam_ind, m.reserved1, m.pin_irq, m.pull_h, m.pull_l);
-    }
 };
 
 using MonHw = MonHwPins<17>;
@@ -61,12 +55,6 @@ struct MonHw2 {
     std::array<std::uint8_t, 8> reserved1{};
     std::uint32_t post_status = 0;
     std::array<std::uint8_t, 4> reserved2{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.ofs_i, m.mag_i, m.ofs_q, m.mag_q, m.cfg_source, m.reserved0, m.low_lev_cfg, m.reserved1, m.post_status,
-          m.reserved2);
-    }
 };
 
 /// One pin of MON-HW3.
@@ -76,11 +64,6 @@ struct MonHw3Item {
         0;  ///< bits: 0 peripheral, 1-3 bank, 4 output, 5 high, 6 virtual, 7 interrupt, 8 pull-up, 9 pull-down
     std::uint8_t vp = 0;  ///< virtual pin
     std::uint8_t reserved1 = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.pin_id, m.pin_mask, m.vp, m.reserved1);
-    }
 };
 
 /// MON-HW3: pins (RECEIVER.md 3.2).
@@ -117,12 +100,6 @@ struct MonRfItem {
     std::int8_t ofs_q = 0;
     std::uint8_t mag_q = 0;
     std::array<std::uint8_t, 3> reserved2{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.block_id, m.flags, m.ant_status, m.ant_power, m.post_status, m.reserved1, m.noise_per_ms, m.agc_cnt,
-          m.jam_ind, m.ofs_i, m.mag_i, m.ofs_q, m.mag_q, m.reserved2);
-    }
 };
 
 /// MON-RF: front ends (RECEIVER.md 3.2).
@@ -149,11 +126,6 @@ struct MonSpanItem {
     std::uint32_t center = 0;                  ///< Hz
     std::uint8_t pga = 0;                      ///< dB
     std::array<std::uint8_t, 3> reserved1{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.spectrum, m.span, m.res, m.center, m.pga, m.reserved1);
-    }
 };
 
 /// MON-SPAN: spectra (F9 interface description).

@@ -22,11 +22,6 @@ struct NavAtt {
     std::array<std::uint8_t, 3> reserved{};
     std::array<std::int32_t, 3> angle{};  ///< 1e-5 deg of roll, pitch, heading
     std::array<std::uint32_t, 3> acc{};   ///< 1e-5 deg
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.version, m.reserved, m.angle, m.acc);
-    }
 };
 
 /// NAV-PVAT: position, velocity, attitude and time of receivers with dead reckoning (F9 interface description, HPS).
@@ -65,14 +60,6 @@ struct NavPvat {
     std::uint16_t ellipse_orientation = 0;   ///< 0.01 deg
     std::array<std::uint32_t, 2> ellipse{};  ///< mm, major and minor half axis
     std::array<std::uint8_t, 8> reserved2{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.version, m.valid, m.year, m.month, m.day, m.hour, m.minute, m.second, m.reserved1, m.t_acc, m.nano,
-          m.fix_type, m.flags, m.flags2, m.num_sv, m.lon, m.lat, m.height, m.h_msl, m.h_acc, m.v_acc, m.vel_ned,
-          m.g_speed, m.s_acc, m.angle, m.mot_heading, m.acc, m.mag_dec, m.mag_acc, m.ellipse_orientation, m.ellipse,
-          m.reserved2);
-    }
 };
 
 /// One sensor of ESF-STATUS.
@@ -81,11 +68,6 @@ struct EsfStatusItem {
     std::uint8_t sens_status2 = 0;  ///< bits: 0-1 calibration, 2-3 time
     std::uint8_t freq = 0;          ///< Hz
     std::uint8_t faults = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.sens_status1, m.sens_status2, m.freq, m.faults);
-    }
 };
 
 /// ESF-STATUS: state of the fusion (M8 interface description).
@@ -134,13 +116,6 @@ struct HnrPvt {
     std::uint32_t s_acc = 0;     ///< mm/s
     std::uint32_t head_acc = 0;  ///< 1e-5 deg
     std::array<std::uint8_t, 4> reserved2{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.year, m.month, m.day, m.hour, m.minute, m.second, m.valid, m.nano, m.gps_fix, m.flags, m.reserved1,
-          m.lon, m.lat, m.height, m.h_msl, m.g_speed, m.speed, m.head_mot, m.head_veh, m.h_acc, m.v_acc, m.s_acc,
-          m.head_acc, m.reserved2);
-    }
 };
 
 /// HNR-ATT: attitude between the epochs (M8 interface description).
@@ -151,11 +126,6 @@ struct HnrAtt {
     std::array<std::uint8_t, 3> reserved{};
     std::array<std::int32_t, 3> angle{};  ///< 1e-5 deg of roll, pitch, heading
     std::array<std::uint32_t, 3> acc{};   ///< 1e-5 deg
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.version, m.reserved, m.angle, m.acc);
-    }
 };
 
 /// HNR-INS: motion between the epochs (M8 interface description).
@@ -166,11 +136,6 @@ struct HnrIns {
     std::uint32_t i_tow = 0;                 ///< ms, GPS time of week of the epoch
     std::array<std::int32_t, 3> ang_rate{};  ///< 1e-3 deg/s about x, y, z
     std::array<std::int32_t, 3> accel{};     ///< 1e-2 m/s² along x, y, z
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.bitfield0, m.reserved, m.i_tow, m.ang_rate, m.accel);
-    }
 };
 
 }  // namespace skyloop

@@ -61,7 +61,7 @@ std::optional<std::vector<DecodedField>> list_as(ByteSpan payload) {
     const auto message = decode_payload<Message>(payload);
     if (!message) return std::nullopt;
     FieldLister lister(names.view());
-    Message::fields(*message, lister);
+    walk_fields(*message, lister);
     return lister.take();
 }
 
@@ -69,9 +69,9 @@ template <class Message, Names names>
 bool fits() {
     Message message;
     Filler filler;
-    Message::fields(message, filler);
+    walk_fields(message, filler);
     FieldLister lister(names.view());
-    Message::fields(std::as_const(message), lister);
+    walk_fields(std::as_const(message), lister);
     return lister.names_fit();
 }
 

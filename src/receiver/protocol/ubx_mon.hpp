@@ -19,11 +19,6 @@ struct AckAck {
     static constexpr UbxMessageId message_id{0x05, 0x01};
     std::uint8_t message_class = 0;
     std::uint8_t id = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.message_class, m.id);
-    }
 };
 
 /// ACK-NAK: a configuration message was refused.
@@ -31,22 +26,12 @@ struct AckNak {
     static constexpr UbxMessageId message_id{0x05, 0x00};
     std::uint8_t message_class = 0;
     std::uint8_t id = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.message_class, m.id);
-    }
 };
 
 /// A fixed text field, filled up with zeros.
 template <std::size_t N>
 struct UbxText {
     std::array<char, N> characters{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.characters);
-    }
 };
 
 /// MON-VER: who the receiver is; texts filled up with zeros.
@@ -104,11 +89,6 @@ struct MonGnss {
     std::uint8_t enabled = 0;
     std::uint8_t simultaneous = 0;  ///< how many at once
     std::array<std::uint8_t, 3> reserved0{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.supported, m.default_gnss, m.enabled, m.simultaneous, m.reserved0);
-    }
 };
 
 /// MON-SYS: load and temperature (RECEIVER.md 3.2).
@@ -128,12 +108,6 @@ struct MonSys {
     std::uint16_t error_count = 0;
     std::int8_t temp_value = 0;  ///< °C
     std::array<std::uint8_t, 5> reserved0{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.msg_ver, m.boot_type, m.cpu_load, m.cpu_load_max, m.mem_usage, m.mem_usage_max, m.io_usage, m.io_usage_max,
-          m.run_time, m.notice_count, m.warn_count, m.error_count, m.temp_value, m.reserved0);
-    }
 };
 
 /// One patch of MON-PATCH.
@@ -142,11 +116,6 @@ struct MonPatchItem {
     std::uint32_t comparator_number = 0;
     std::uint32_t patch_address = 0;
     std::uint32_t patch_data = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.patch_info, m.comparator_number, m.patch_address, m.patch_data);
-    }
 };
 
 /// MON-PATCH: patches of the firmware (M8 interface description).
@@ -167,11 +136,6 @@ struct MonPatch {
 struct MonRxr {
     static constexpr UbxMessageId message_id{0x0A, 0x21};
     std::uint8_t flags = 0;  ///< bit 0: awake
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.flags);
-    }
 };
 
 /// MGA-ACK-DATA0: what came of an assistance message (M8 interface description).
@@ -183,11 +147,6 @@ struct MgaAck {
         0;                    ///< 0 accepted, 1 no time, 2 version, 3 size, 4 not stored, 5 not ready, 6 type unknown
     std::uint8_t msg_id = 0;  ///< of class MGA
     std::array<std::uint8_t, 4> payload_start{};  ///< of that message
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.type, m.version, m.info_code, m.msg_id, m.payload_start);
-    }
 };
 
 }  // namespace skyloop

@@ -19,11 +19,6 @@ struct NavPvtVehicle {
     std::int32_t head_veh = 0;  ///< 1e-5 deg
     std::int16_t mag_dec = 0;   ///< 0.01 deg
     std::uint16_t mag_acc = 0;  ///< 0.01 deg
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.head_veh, m.mag_dec, m.mag_acc);
-    }
 };
 
 /// NAV-PVT: position, velocity and time; 92 bytes, 84 on u-blox 7.
@@ -76,11 +71,6 @@ struct NavPosecef {
     std::uint32_t i_tow = 0;             ///< ms, GPS time of week of the epoch
     std::array<std::int32_t, 3> ecef{};  ///< cm
     std::uint32_t p_acc = 0;             ///< cm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.ecef, m.p_acc);
-    }
 };
 
 /// NAV-POSLLH: geodetic position.
@@ -93,11 +83,6 @@ struct NavPosllh {
     std::int32_t h_msl = 0;   ///< mm above mean sea level
     std::uint32_t h_acc = 0;  ///< mm
     std::uint32_t v_acc = 0;  ///< mm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.lon, m.lat, m.height, m.h_msl, m.h_acc, m.v_acc);
-    }
 };
 
 /// NAV-STATUS: state of the navigation.
@@ -110,11 +95,6 @@ struct NavStatus {
     std::uint8_t flags2 = 0;    ///< bits: 0-1 power save, 3-4 spoofing, 6-7 carrier solution
     std::uint32_t ttff = 0;     ///< ms to the first fix
     std::uint32_t msss = 0;     ///< ms since start-up
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.gps_fix, m.flags, m.fix_stat, m.flags2, m.ttff, m.msss);
-    }
 };
 
 /// NAV-DOP: dilutions of precision, each 0.01.
@@ -128,11 +108,6 @@ struct NavDop {
     std::uint16_t h_dop = 0;
     std::uint16_t n_dop = 0;
     std::uint16_t e_dop = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.g_dop, m.p_dop, m.t_dop, m.v_dop, m.h_dop, m.n_dop, m.e_dop);
-    }
 };
 
 /// NAV-SOL: solution in the Earth-fixed frame (M8 and older).
@@ -151,12 +126,6 @@ struct NavSol {
     std::uint8_t reserved1 = 0;
     std::uint8_t num_sv = 0;  ///< satellites used
     std::uint32_t reserved2 = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.f_tow, m.week, m.gps_fix, m.flags, m.ecef, m.p_acc, m.ecef_v, m.s_acc, m.p_dop, m.reserved1,
-          m.num_sv, m.reserved2);
-    }
 };
 
 /// NAV-VELNED: velocity in the local frame.
@@ -171,11 +140,6 @@ struct NavVelned {
     std::int32_t heading = 0;   ///< 1e-5 deg
     std::uint32_t s_acc = 0;    ///< cm/s
     std::uint32_t c_acc = 0;    ///< 1e-5 deg
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.vel_n, m.vel_e, m.vel_d, m.speed, m.g_speed, m.heading, m.s_acc, m.c_acc);
-    }
 };
 
 /// NAV-HPPOSLLH: geodetic position with more digits.
@@ -195,12 +159,6 @@ struct NavHpposllh {
     std::int8_t h_msl_hp = 0;   ///< 0.1 mm, to add
     std::uint32_t h_acc = 0;    ///< 0.1 mm
     std::uint32_t v_acc = 0;    ///< 0.1 mm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved, m.flags, m.i_tow, m.lon, m.lat, m.height, m.h_msl, m.lon_hp, m.lat_hp, m.height_hp,
-          m.h_msl_hp, m.h_acc, m.v_acc);
-    }
 };
 
 /// NAV-COV: covariances in north, east, down, in the order NN, NE, ND, EE, ED, DD.
@@ -213,22 +171,12 @@ struct NavCov {
     std::array<std::uint8_t, 9> reserved{};
     std::array<float, 6> pos_cov{};  ///< m²
     std::array<float, 6> vel_cov{};  ///< m²/s²
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.version, m.pos_cov_valid, m.vel_cov_valid, m.reserved, m.pos_cov, m.vel_cov);
-    }
 };
 
 /// NAV-EOE: the last NAV message of an epoch.
 struct NavEoe {
     static constexpr UbxMessageId message_id{0x01, 0x61};
     std::uint32_t i_tow = 0;  ///< ms, GPS time of week of the epoch
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow);
-    }
 };
 
 /// NAV-VELECEF: velocity in the Earth-fixed frame (RECEIVER.md 3.1).
@@ -237,11 +185,6 @@ struct NavVelecef {
     std::uint32_t i_tow = 0;               ///< ms, GPS time of week of the epoch
     std::array<std::int32_t, 3> ecef_v{};  ///< cm/s
     std::uint32_t s_acc = 0;               ///< cm/s
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.ecef_v, m.s_acc);
-    }
 };
 
 /// NAV-HPPOSECEF: position in the Earth-fixed frame with more digits (RECEIVER.md 3.1).
@@ -254,11 +197,6 @@ struct NavHpposecef {
     std::array<std::int8_t, 3> ecef_hp{};  ///< 0.1 mm, to add
     std::uint8_t flags = 0;                ///< bit 0: invalid
     std::uint32_t p_acc = 0;               ///< 0.1 mm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved, m.i_tow, m.ecef, m.ecef_hp, m.flags, m.p_acc);
-    }
 };
 
 /// NAV-ODO: odometer (RECEIVER.md 3.1).
@@ -270,11 +208,6 @@ struct NavOdo {
     std::uint32_t distance = 0;        ///< m since NAV-RESETODO
     std::uint32_t total_distance = 0;  ///< m
     std::uint32_t distance_std = 0;    ///< m, 1 σ
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved, m.i_tow, m.distance, m.total_distance, m.distance_std);
-    }
 };
 
 /// NAV-EELL: horizontal error ellipse (M8 interface description).
@@ -286,11 +219,6 @@ struct NavEell {
     std::uint16_t orient = 0;  ///< 0.01 deg of the major axis from true north
     std::uint32_t major = 0;   ///< mm
     std::uint32_t minor = 0;   ///< mm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.version, m.reserved, m.orient, m.major, m.minor);
-    }
 };
 
 }  // namespace skyloop

@@ -29,12 +29,6 @@ struct MonCommsItem {
     std::array<std::uint16_t, 4> msgs{};  ///< received, by MonComms::prot_ids
     std::array<std::uint8_t, 8> reserved1{};
     std::uint32_t skipped = 0;  ///< bytes
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.port_id, m.tx_pending, m.tx_bytes, m.tx_usage, m.tx_peak_usage, m.rx_pending, m.rx_bytes, m.rx_usage,
-          m.rx_peak_usage, m.overrun_errs, m.msgs, m.reserved1, m.skipped);
-    }
 };
 
 /// MON-COMMS: ports (RECEIVER.md 3.2).
@@ -66,11 +60,6 @@ struct MonTxbuf {
     std::uint8_t t_peak_usage = 0;             ///< %
     std::uint8_t errors = 0;                   ///< bits: 0-5 limit of the port, 6 memory, 7 allocation
     std::uint8_t reserved0 = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.pending, m.usage, m.peak_usage, m.t_usage, m.t_peak_usage, m.errors, m.reserved0);
-    }
 };
 
 /// MON-RXBUF: receive buffers by port, as MON-TXBUF (RECEIVER.md 3.2).
@@ -79,11 +68,6 @@ struct MonRxbuf {
     std::array<std::uint16_t, 6> pending{};    ///< bytes
     std::array<std::uint8_t, 6> usage{};       ///< %
     std::array<std::uint8_t, 6> peak_usage{};  ///< %
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.pending, m.usage, m.peak_usage);
-    }
 };
 
 /// One port of MON-IO.
@@ -95,11 +79,6 @@ struct MonIoItem {
     std::uint16_t overrun_errs = 0;  ///< slots of 100 ms
     std::uint16_t break_cond = 0;    ///< slots of 100 ms
     std::array<std::uint8_t, 4> reserved1{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.rx_bytes, m.tx_bytes, m.parity_errs, m.framing_errs, m.overrun_errs, m.break_cond, m.reserved1);
-    }
 };
 
 /// MON-IO: ports, in the order of MON-TXBUF (M8 interface description).
@@ -118,11 +97,6 @@ struct MonMsgpp {
     static constexpr UbxMessageId message_id{0x0A, 0x06};
     std::array<std::uint16_t, 48> msg{};     ///< eight protocols of each port, ports in the order of MON-TXBUF
     std::array<std::uint32_t, 6> skipped{};  ///< bytes
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.msg, m.skipped);
-    }
 };
 
 }  // namespace skyloop

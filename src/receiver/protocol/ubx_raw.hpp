@@ -28,12 +28,6 @@ struct RxmMeasxItem {
     std::uint8_t int_code_phase = 0;      ///< ms
     std::uint8_t pseu_range_rms_err = 0;  ///< index 0 to 63
     std::array<std::uint8_t, 2> reserved4{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.gnss_id, m.sv_id, m.cno, m.mpath_indic, m.doppler_ms, m.doppler_hz, m.whole_chips, m.frac_chips,
-          m.code_phase, m.int_code_phase, m.pseu_range_rms_err, m.reserved4);
-    }
 };
 
 /// RXM-MEASX: code phases for others to solve (RECEIVER.md 3.2).
@@ -73,11 +67,6 @@ struct RxmRtcm {
     std::uint16_t sub_type = 0;
     std::uint16_t ref_station = 0;  ///< DF003, or 0xFFFF
     std::uint16_t msg_type = 0;     ///< 1077
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.flags, m.sub_type, m.ref_station, m.msg_type);
-    }
 };
 
 /// RXM-COR: a message of corrections came in, of whatever protocol (F9 interface description).
@@ -92,11 +81,6 @@ struct RxmCor {
     std::uint32_t status_info = 0;
     std::uint16_t msg_type = 0;      ///< 1077
     std::uint16_t msg_sub_type = 0;  ///< of 4072
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.ebno, m.reserved0, m.status_info, m.msg_type, m.msg_sub_type);
-    }
 };
 
 /// One satellite of RXM-SVSI.
@@ -106,11 +90,6 @@ struct RxmSvsiItem {
     std::int16_t azim = 0;     ///< deg
     std::int8_t elev = 0;      ///< deg
     std::uint8_t age = 0;      ///< bits: 0-3 almanac, days + 4; 4-7 ephemeris, hours + 4; 15 none
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.sv_id, m.sv_flag, m.azim, m.elev, m.age);
-    }
 };
 
 /// RXM-SVSI: what is known of satellites (M8 interface description).
@@ -134,11 +113,6 @@ struct RxmPmreqShort {
     static constexpr UbxMessageId message_id{0x02, 0x41};
     std::uint32_t duration = 0;  ///< ms; 0: until it is woken
     std::uint32_t flags = 0;     ///< bits: 1 backup, without which it means nothing
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.duration, m.flags);
-    }
 };
 
 /// RXM-PMREQ in its longer form.
@@ -149,11 +123,6 @@ struct RxmPmreq {
     std::uint32_t duration = 0;        ///< ms; 0: until it is woken
     std::uint32_t flags = 0;           ///< bits: 1 backup, 2 even while USB is connected
     std::uint32_t wakeup_sources = 0;  ///< bits: 3 UART RX, 5 EXTINT0, 6 EXTINT1, 7 SPI CS
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved0, m.duration, m.flags, m.wakeup_sources);
-    }
 };
 
 /// RXM-RLM: an answer to a distress call, short form (M8 interface description).
@@ -167,11 +136,6 @@ struct RxmRlm {
     std::uint8_t message = 0;
     std::array<std::uint8_t, 2> params{};
     std::uint8_t reserved1 = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.type, m.sv_id, m.reserved0, m.beacon, m.message, m.params, m.reserved1);
-    }
 };
 
 }  // namespace skyloop

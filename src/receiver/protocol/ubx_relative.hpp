@@ -27,11 +27,6 @@ struct NavRelposned0 {
     std::array<std::uint32_t, 3> acc{};  ///< 0.1 mm north, east, down
     std::uint32_t flags =
         0;  ///< bits: 0 fix ok, 1 differential, 2 vector valid, 3-4 carrier solution, 5 moving base, 6-7 base missed
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved1, m.ref_station_id, m.i_tow, m.rel_pos, m.rel_pos_hp, m.reserved2, m.acc, m.flags);
-    }
 };
 
 /// NAV-RELPOSNED version 1: from base to rover, 64 bytes (F9; RECEIVER.md 3.1).
@@ -53,12 +48,6 @@ struct NavRelposned {
     std::array<std::uint8_t, 4> reserved2{};
     std::uint32_t flags = 0;  ///< bits: 0 fix ok, 1 differential, 2 vector valid, 3-4 carrier solution, 5 moving base,
                               ///< 6-7 base missed, 8 heading
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved0, m.ref_station_id, m.i_tow, m.rel_pos, m.rel_pos_length, m.rel_pos_heading,
-          m.reserved1, m.rel_pos_hp, m.rel_pos_length_hp, m.acc, m.acc_length, m.acc_heading, m.reserved2, m.flags);
-    }
 };
 
 /// NAV-SVIN: survey of the base's place (RECEIVER.md 3.1).
@@ -76,12 +65,6 @@ struct NavSvin {
     std::uint8_t valid = 0;
     std::uint8_t active = 0;
     std::array<std::uint8_t, 2> reserved3{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved1, m.i_tow, m.dur, m.mean, m.mean_hp, m.reserved2, m.mean_acc, m.obs, m.valid, m.active,
-          m.reserved3);
-    }
 };
 
 }  // namespace skyloop

@@ -23,11 +23,6 @@ struct NavSatItem {
     std::int16_t azim = 0;    ///< deg
     std::int16_t pr_res = 0;  ///< 0.1 m
     std::uint32_t flags = 0;  ///< bits: 0-2 quality, 3 used, 4-5 health, 8-10 orbit source, 11 ephemeris, 12 almanac
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.gnss_id, m.sv_id, m.cno, m.elev, m.azim, m.pr_res, m.flags);
-    }
 };
 
 /// NAV-SAT: all satellites.
@@ -57,11 +52,6 @@ struct NavSvinfoItem {
     std::int8_t elev = 0;      ///< deg
     std::int16_t azim = 0;     ///< deg
     std::int32_t pr_res = 0;   ///< cm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.chn, m.sv_id, m.flags, m.quality, m.cno, m.elev, m.azim, m.pr_res);
-    }
 };
 
 /// NAV-SVINFO: all channels (M8 and older).
@@ -94,12 +84,6 @@ struct NavSigItem {
     std::uint8_t iono_model = 0;
     std::uint16_t flags = 0;  ///< bits: 0-1 health, 2 smoothed, 3-5 range, carrier, Doppler used
     std::array<std::uint8_t, 4> reserved{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.gnss_id, m.sv_id, m.sig_id, m.freq_id, m.pr_res, m.cno, m.quality, m.corr_source, m.iono_model, m.flags,
-          m.reserved);
-    }
 };
 
 /// NAV-SIG: all signals (F9 interface description).
@@ -135,12 +119,6 @@ struct RxmRawxItem {
     std::uint8_t do_stdev = 0;   ///< bits 0-3: 0.002·2^n Hz
     std::uint8_t trk_stat = 0;   ///< bits: 0 range, 1 phase, 2 half cycle, 3 half cycle subtracted
     std::uint8_t reserved = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.pr_mes, m.cp_mes, m.do_mes, m.gnss_id, m.sv_id, m.sig_id, m.freq_id, m.locktime, m.cno, m.pr_stdev,
-          m.cp_stdev, m.do_stdev, m.trk_stat, m.reserved);
-    }
 };
 
 /// RXM-RAWX: raw measurements.

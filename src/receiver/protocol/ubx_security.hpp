@@ -23,11 +23,6 @@ struct SecSig1 {
     std::array<std::uint8_t, 3> reserved1{};
     std::uint8_t spf_flags = 0;  ///< bits: 0 detection on, 1-3 spoofing state
     std::array<std::uint8_t, 3> reserved2{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.reserved0, m.jam_flags, m.reserved1, m.spf_flags, m.reserved2);
-    }
 };
 
 /// One band of SEC-SIG version 2.
@@ -65,11 +60,6 @@ struct SecSiglogItem {
     std::uint8_t detection_type = 0;  ///< 0 simulated signal, 3 abrupt change, 4 jamming, 5 authentication, 6 replay
     std::uint8_t event_type = 0;      ///< 0 started, 1 stopped, 2 triggered, 3 timed out
     std::array<std::uint8_t, 2> reserved1{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.time_elapsed, m.detection_type, m.event_type, m.reserved1);
-    }
 };
 
 /// SEC-SIGLOG: the last events of jamming and spoofing, at most 16 (RECEIVER.md 3.2).

@@ -22,11 +22,6 @@ struct NavOrbItem {
     std::uint8_t eph = 0;        ///< bits: 0-4 usable for n·15 min, 31 unknown, 5-7 source
     std::uint8_t alm = 0;        ///< bits: 0-4 usable for n days, 31 unknown, 5-7 source
     std::uint8_t other_orb = 0;  ///< bits: 0-4 usable, 5-7 kind
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.gnss_id, m.sv_id, m.sv_flag, m.eph, m.alm, m.other_orb);
-    }
 };
 
 /// NAV-ORB: what is known of orbits (RECEIVER.md 3.1).
@@ -57,11 +52,6 @@ struct NavSbasItem {
     std::int16_t prc = 0;  ///< cm
     std::array<std::uint8_t, 2> reserved3{};
     std::int16_t ic = 0;  ///< cm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.sv_id, m.flags, m.udre, m.sv_sys, m.sv_service, m.reserved2, m.prc, m.reserved3, m.ic);
-    }
 };
 
 /// NAV-SBAS: augmentation by satellites (RECEIVER.md 3.1).
@@ -92,11 +82,6 @@ struct NavDgpsItem {
     std::uint16_t age_c = 0;  ///< ms
     float prc = 0;            ///< m
     float prrc = 0;           ///< m/s
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.sv_id, m.flags, m.age_c, m.prc, m.prrc);
-    }
 };
 
 /// NAV-DGPS: differential corrections (M8 interface description).
@@ -126,22 +111,12 @@ struct NavAopstatus {
     std::uint8_t aop_cfg = 0;  ///< bit 0: on
     std::uint8_t status = 0;   ///< 0 idle, 1 running
     std::array<std::uint8_t, 10> reserved{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.aop_cfg, m.status, m.reserved);
-    }
 };
 
 /// One fence of NAV-GEOFENCE.
 struct NavGeofenceItem {
     std::uint8_t state = 0;  ///< 0 unknown, 1 inside, 2 outside
     std::uint8_t id = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.state, m.id);
-    }
 };
 
 /// NAV-GEOFENCE: fences (M8 interface description).
@@ -169,11 +144,6 @@ struct NavSlasItem {
     std::uint8_t reserved1 = 0;
     std::array<std::uint8_t, 3> reserved2{};
     std::int16_t prc = 0;  ///< cm
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.gnss_id, m.sv_id, m.reserved1, m.reserved2, m.prc);
-    }
 };
 
 /// NAV-SLAS: corrections of QZSS (F9 interface description).
@@ -217,13 +187,6 @@ struct NavPl {
     std::uint16_t pl_vel_horiz_orient = 0;  ///< 0.01 deg
     std::uint32_t pl_time = 0;              ///< ns
     std::array<std::uint8_t, 4> reserved1{};
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.version, m.tmir_coeff, m.tmir_exp, m.pl_pos_valid, m.pl_pos_frame, m.pl_vel_valid, m.pl_vel_frame,
-          m.pl_time_valid, m.invalidity_reason, m.reserved0, m.i_tow, m.pl_pos, m.pl_vel, m.pl_pos_horiz_orient,
-          m.pl_vel_horiz_orient, m.pl_time, m.reserved1);
-    }
 };
 
 }  // namespace skyloop

@@ -27,11 +27,6 @@ struct NavTimeutc {
     std::uint8_t minute = 0;
     std::uint8_t second = 0;  ///< 0 to 60
     std::uint8_t valid = 0;   ///< bits: 0 time of week, 1 week, 2 UTC, 4-7 standard
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.t_acc, m.nano, m.year, m.month, m.day, m.hour, m.minute, m.second, m.valid);
-    }
 };
 
 /// NAV-TIMEGPS: the epoch in GPS time.
@@ -43,11 +38,6 @@ struct NavTimegps {
     std::int8_t leap_s = 0;   ///< s, GPS time minus UTC
     std::uint8_t valid = 0;   ///< bits: 0 time of week, 1 week, 2 leap seconds
     std::uint32_t t_acc = 0;  ///< ns
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.f_tow, m.week, m.leap_s, m.valid, m.t_acc);
-    }
 };
 
 /// NAV-CLOCK: the receiver's clock.
@@ -58,11 +48,6 @@ struct NavClock {
     std::int32_t clk_d = 0;   ///< ns/s, drift
     std::uint32_t t_acc = 0;  ///< ns
     std::uint32_t f_acc = 0;  ///< ps/s
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.clk_b, m.clk_d, m.t_acc, m.f_acc);
-    }
 };
 
 /// TIM-TP: the time of the next pulse, by the time base that the pulses are aligned to.
@@ -74,11 +59,6 @@ struct TimTp {
     std::uint16_t week = 0;        ///< of the next pulse
     std::uint8_t flags = 0;        ///< bits: 0 UTC base, 1 UTC available, 2-3 RAIM, 4 q_err invalid
     std::uint8_t ref_info = 0;     ///< bits: 0-3 reference GNSS, 4-7 UTC standard
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.tow_ms, m.tow_sub_ms, m.q_err, m.week, m.flags, m.ref_info);
-    }
 };
 
 /// NAV-TIMEGAL: the epoch in Galileo time (RECEIVER.md 3.1).
@@ -91,11 +71,6 @@ struct NavTimegal {
     std::int8_t leap_s = 0;      ///< s, against UTC
     std::uint8_t valid = 0;      ///< bits: 0 time of week, 1 week, 2 leap seconds
     std::uint32_t t_acc = 0;     ///< ns
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.gal_tow, m.f_gal_tow, m.gal_wno, m.leap_s, m.valid, m.t_acc);
-    }
 };
 
 /// NAV-TIMEBDS: the epoch in BeiDou time (RECEIVER.md 3.1).
@@ -108,11 +83,6 @@ struct NavTimebds {
     std::int8_t leap_s = 0;   ///< s, against UTC
     std::uint8_t valid = 0;   ///< bits: 0 time of week, 1 week, 2 leap seconds
     std::uint32_t t_acc = 0;  ///< ns
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.sow, m.f_sow, m.week, m.leap_s, m.valid, m.t_acc);
-    }
 };
 
 /// NAV-TIMEQZSS: the epoch in QZSS time; like NAV-TIMEGAL (M10 interface description).
@@ -125,11 +95,6 @@ struct NavTimeqzss {
     std::int8_t leap_s = 0;       ///< s, against UTC
     std::uint8_t valid = 0;       ///< bits: 0 time of week, 1 week, 2 leap seconds
     std::uint32_t t_acc = 0;      ///< ns
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.qzss_tow, m.f_qzss_tow, m.qzss_wno, m.leap_s, m.valid, m.t_acc);
-    }
 };
 
 /// NAV-TIMEGLO: the epoch in GLONASS time, UTC and three hours (RECEIVER.md 3.1).
@@ -142,11 +107,6 @@ struct NavTimeglo {
     std::uint8_t n_4 = 0;     ///< four years since 1996, from 1
     std::uint8_t valid = 0;   ///< bits: 0 time of day, 1 date
     std::uint32_t t_acc = 0;  ///< ns
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.tod, m.f_tod, m.n_t, m.n_4, m.valid, m.t_acc);
-    }
 };
 
 /// NAV-TIMELS: leap seconds (RECEIVER.md 3.1).
@@ -165,12 +125,6 @@ struct NavTimels {
     std::uint16_t date_of_ls_gps_dn = 0;  ///< day of the week, 1 Sunday
     std::array<std::uint8_t, 3> reserved1{};
     std::uint8_t valid = 0;  ///< bits: 0 current number, 1 time to the event
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.i_tow, m.version, m.reserved0, m.src_of_curr_ls, m.curr_ls, m.src_of_ls_change, m.ls_change,
-          m.time_to_ls_event, m.date_of_ls_gps_wn, m.date_of_ls_gps_dn, m.reserved1, m.valid);
-    }
 };
 
 /// TIM-TM2: a mark on an input pin (RECEIVER.md 3.2).
@@ -187,11 +141,6 @@ struct TimTm2 {
     std::uint32_t tow_ms_f = 0;      ///< ms
     std::uint32_t tow_sub_ms_f = 0;  ///< ns
     std::uint32_t acc_est = 0;       ///< ns
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.ch, m.flags, m.count, m.wn_r, m.wn_f, m.tow_ms_r, m.tow_sub_ms_r, m.tow_ms_f, m.tow_sub_ms_f, m.acc_est);
-    }
 };
 
 /// TIM-VRFY: sourced time against that of the receiver (M8 interface description).
@@ -204,11 +153,6 @@ struct TimVrfy {
     std::uint16_t wno = 0;
     std::uint8_t flags = 0;  ///< bits 0-2: source
     std::uint8_t reserved = 0;
-
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v(m.itow, m.frac, m.delta_ms, m.delta_ns, m.wno, m.flags, m.reserved);
-    }
 };
 
 }  // namespace skyloop

@@ -33,7 +33,7 @@ template <class Message>
 bool names_fit() {
     FieldLister lister(Message::field_names);
     const Message message;
-    Message::fields(message, lister);
+    walk_fields(message, lister);
     return lister.names_fit();
 }
 
@@ -54,7 +54,7 @@ TEST(DecodedMessage, EveryOtherMessageHasAsManyNamesAsFields) {
     SbfPvtGeodetic pvt;
     pvt.accuracy.emplace();
     FieldLister lister(SbfPvtGeodetic::field_names);
-    SbfPvtGeodetic::fields(std::as_const(pvt), lister);
+    walk_fields(std::as_const(pvt), lister);
     EXPECT_TRUE(lister.names_fit());
 }
 

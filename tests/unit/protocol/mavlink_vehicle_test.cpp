@@ -34,7 +34,7 @@ void expect_definition(const std::string& fields, std::size_t whole_size) {
     EXPECT_EQ(wire_size(Message{}), whole_size) << name;
     FieldLister lister(Message::field_names);
     const Message message;
-    Message::fields(message, lister);
+    walk_fields(message, lister);
     EXPECT_TRUE(lister.names_fit()) << name;
 }
 

@@ -13,7 +13,7 @@ bool has_fitting_names() {
     Message message;
     if constexpr (requires { message.accuracy.emplace(); }) message.accuracy.emplace();
     FieldLister lister(Message::field_names);
-    Message::fields(std::as_const(message), lister);
+    walk_fields(std::as_const(message), lister);
     return lister.names_fit();
 }
 
