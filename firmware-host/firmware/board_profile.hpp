@@ -1,6 +1,8 @@
 /// What distinguishes one receiver model from another, as data.
+/// What a board sends and answers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -13,7 +15,6 @@
 #include "base/core/units.hpp"
 #include "firmware/port_id.hpp"
 #include "receiver/protocol/nmea_satellites.hpp"
-#include "receiver/protocol/nmea_version.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
@@ -223,5 +224,15 @@ struct BoardProfile {
     std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
     std::set<std::uint32_t> absent_keys;            ///< items that it does not have
 };
+
+/// Whether a message can go out periodically.
+inline bool sends(const BoardProfile& board, UbxMessageId message) {
+    return std::find(board.messages.begin(), board.messages.end(), message) != board.messages.end();
+}
+
+/// Whether the board has a message at all: it sends or answers it.
+inline bool knows(const BoardProfile& board, UbxMessageId message) {
+    return board.polled.contains(message) || sends(board, message);
+}
 
 }  // namespace skyloop::firmware

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/geo/geodesic.hpp"
+#include "base/geo/geodetic.hpp"
 #include "firmware/config/config_keys.hpp"
 
 namespace skyloop::firmware {

@@ -1,4 +1,5 @@
 /// Everything from which messages are made.
+/// The instants of a receiver's own clock.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 
 #include "base/core/units.hpp"
 #include "base/geo/frames.hpp"
-#include "firmware/base_survey.hpp"
+#include "firmware/base_station.hpp"
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
 #include "firmware/port_id.hpp"
@@ -151,5 +152,21 @@ struct ReportContext {
     PortId port = PortId::uart1;                ///< by which it leaves
     std::span<const UbxMessageId> following{};  ///< what is due by the port in the same epoch, after it
 };
+
+/// How far the receiver's clock is ahead of GPS time, whole milliseconds aside, as NAV-CLOCK's clkB: ±0.5 ms. Nothing
+/// before it has been solved.
+Nanoseconds clock_ahead(const NavigationState& state);
+
+/// Carries the position, which was solved for a whole millisecond of GPS time, to the one of the receiver's clock, for
+/// which it is reported.
+void carry_to_clock_instant(NavigationState& state);
+
+/// Carries what was measured `past` a whole millisecond of the receiver's clock back to that, by the Doppler: ranges by
+/// centimetres, to better than a millimetre. Receivers measure at whole milliseconds of their clocks (rcvTow of 4568
+/// epochs of ZED-F9T, M8P and M8T).
+Observation carried(const Observation& measured, Seconds past);
+
+/// Where one comes from there with that velocity.
+Geodetic carried(const Geodetic& from, const VelocityNed& velocity, Seconds time);
 
 }  // namespace skyloop::firmware

@@ -5,7 +5,7 @@
 #include <array>
 #include <map>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/nmea_commands.hpp"

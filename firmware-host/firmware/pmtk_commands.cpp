@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/nmea_commands.hpp"

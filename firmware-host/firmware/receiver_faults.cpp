@@ -1,15 +1,14 @@
 // What faults make of a receiver.
 #include <algorithm>
 
-#include "base/core/number_in.hpp"
-#include "base/core/overloaded.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/std_additions.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/config_keys.hpp"
-#include "firmware/config/message_names.hpp"
-#include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/port_id.hpp"
 #include "firmware/receiver_core.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 
 namespace skyloop::firmware {

@@ -3,13 +3,13 @@
 #include <iterator>
 
 #include "base/core/units.hpp"
-#include "firmware/assistance.hpp"
-#include "firmware/board_messages.hpp"
-#include "firmware/message_class.hpp"
+#include "firmware/board_profile.hpp"
+#include "firmware/corrections_and_assistance.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/port_id.hpp"
 #include "firmware/receiver_core.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_device.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_raw.hpp"

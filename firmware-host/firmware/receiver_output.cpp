@@ -3,12 +3,12 @@
 #include <cmath>
 #include <utility>
 
-#include "firmware/clock_instant.hpp"
-#include "firmware/message_class.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/other_protocols.hpp"
+#include "firmware/navigation_state.hpp"
+#include "firmware/port_id.hpp"
 #include "firmware/receiver_core.hpp"
-#include "firmware/septentrio/modes.hpp"
+#include "firmware/septentrio/rover_and_station.hpp"
 #include "receiver/protocol/ubx_time.hpp"
 
 namespace skyloop::firmware {

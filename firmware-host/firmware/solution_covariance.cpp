@@ -1,8 +1,47 @@
 #include "firmware/solution_covariance.hpp"
 
+#include <Eigen/Dense>
+
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace skyloop::firmware {
+namespace {
+
+// Correlation of the east and north errors: q_en / √(q_ee q_nn) of Q = (HᵀH)⁻¹.
+double horizontal_correlation(std::span<const SatelliteStatus> used) {
+    if (used.size() < 4) return 0;
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    for (const SatelliteStatus& s : used) {
+        const double az = s.azimuth.rad(), el = s.elevation.rad();
+        const Eigen::Vector4d row(std::cos(el) * std::sin(az), std::cos(el) * std::cos(az), std::sin(el), 1.0);
+        normal += row * row.transpose();
+    }
+    const Eigen::FullPivLU<Eigen::Matrix4d> decomposed(normal);
+    if (!decomposed.isInvertible()) return 0;
+    const Eigen::Matrix4d cofactors = decomposed.inverse();
+    const double correlation = cofactors(0, 1) / std::sqrt(cofactors(0, 0) * cofactors(1, 1));
+    return std::isfinite(correlation) ? std::clamp(correlation, -1.0, 1.0) : 0;
+}
+
+}  // namespace
+
+std::optional<ErrorEllipse> error_ellipse(const Fix& fix, std::span<const SatelliteStatus> used) {
+    const double hdop = std::hypot(fix.dop.edop, fix.dop.ndop);
+    if (!(hdop > 0) || !std::isfinite(hdop)) return std::nullopt;
+    const double north = fix.horizontal_accuracy.value() * fix.dop.ndop / hdop;
+    const double east = fix.horizontal_accuracy.value() * fix.dop.edop / hdop;
+    const double covariance = horizontal_correlation(used) * north * east;
+    // Eigenvalues and direction of the 2 × 2 covariance matrix.
+    const double mean = (north * north + east * east) / 2;
+    const double half_difference = (north * north - east * east) / 2;
+    const double spread = std::hypot(half_difference, covariance);
+    double orientation = std::atan2(covariance, half_difference) / 2;
+    if (orientation < 0) orientation += std::numbers::pi;
+    return ErrorEllipse{Metres(std::sqrt(mean + spread)), Metres(std::sqrt(std::max(0.0, mean - spread))),
+                        Angle::radians(orientation), Metres(north), Metres(east)};
+}
 
 Eigen::Matrix4d position_covariance(const Fix& fix, const ErrorEllipse& ellipse) {
     const double east = ellipse.east.value(), north = ellipse.north.value();

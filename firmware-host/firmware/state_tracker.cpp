@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "base/geo/local_frame.hpp"
-#include "firmware/base_place.hpp"
-#include "firmware/clock_instant.hpp"
+#include "firmware/base_station.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
+#include "firmware/navigation_state.hpp"
 
 namespace skyloop::firmware {
 namespace {

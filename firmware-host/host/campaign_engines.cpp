@@ -1,4 +1,4 @@
-#include "campaign_engines.hpp"
+#include "campaign_options.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,14 +10,11 @@
 #include <numeric>
 #include <system_error>
 
-#include "base/core/text_file.hpp"
-#include "campaign_options.hpp"
+#include "base/core/files.hpp"
 #include "campaigns/engines/engine_files.hpp"
-#include "campaigns/engines/kubernetes_manifest.hpp"
-#include "campaigns/engines/parallel_scripts.hpp"
-#include "campaigns/engines/quoting.hpp"
+#include "campaigns/engines/engine_scripts.hpp"
+#include "campaigns/engines/engine_task.hpp"
 #include "campaigns/engines/slurm_job.hpp"
-#include "campaigns/engines/slurm_scripts.hpp"
 #include "run_session.hpp"
 
 namespace skyloop::host {

@@ -6,15 +6,13 @@
 #include <map>
 #include <thread>
 
-#include "base/core/say.hpp"
-#include "base/core/shell_word.hpp"
-#include "base/core/terminal_text.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
+#include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
 #include "campaign_options.hpp"
 #include "campaigns/campaign/campaign_database.hpp"
 #include "campaigns/campaign/campaign_worker.hpp"
-#include "campaigns/campaign/shard_file.hpp"
+#include "campaigns/campaign/shard_results.hpp"
 #include "campaigns/campaign/worker_pool.hpp"
 #include "data_folders.hpp"
 #include "run_session.hpp"

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "base/core/number_in.hpp"
-#include "base/core/spelling.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/words.hpp"
 #include "commands.hpp"
 #include "messages.hpp"
 #include "run/control/control_client.hpp"

@@ -1,3 +1,5 @@
+// Names of configuration keys in decoded messages: the receiver knows them, the protocol layer does not.
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,19 +9,62 @@
 #include <cstdio>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/core/archive.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "commands.hpp"
-#include "config_key_names.hpp"
-#include "input_stream.hpp"
+#include "file_streams.hpp"
+#include "firmware/config/config_keys.hpp"
 #include "messages.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 #include "run_options.hpp"
 #include "run_session.hpp"
 
 namespace skyloop::host {
+
+/// Adds to CFG-VALSET and CFG-VALGET a `name` beside each `key` of `pairs`, and to CFG-VALGET and CFG-VALDEL the list
+/// `names` after `keys`. A key that is not known has no name. Other messages stay as they are.
+void name_config_keys(DecodedMessage& message);
+
+namespace {
+
+DecodedValue name_of(const DecodedValue& key) {
+    const auto* id = std::get_if<std::uint64_t>(&key.content);
+    const auto* known = id == nullptr ? nullptr : firmware::find_config_key(static_cast<std::uint32_t>(*id));
+    if (known == nullptr) return {};
+    return {std::string(known->name)};
+}
+
+void name_pair(DecodedValue& pair) {
+    auto* fields = std::get_if<std::vector<DecodedField>>(&pair.content);
+    if (fields == nullptr || fields->empty()) return;
+    DecodedField name{"name", name_of(fields->front().value)};
+    fields->insert(fields->begin() + 1, std::move(name));
+}
+
+}  // namespace
+
+void name_config_keys(DecodedMessage& message) {
+    if (message.protocol != "ubx" || !message.name.starts_with("CFG-VAL")) return;
+    for (std::size_t i = 0; i < message.fields.size(); ++i) {
+        auto* values = std::get_if<std::vector<DecodedValue>>(&message.fields[i].value.content);
+        if (values == nullptr) continue;
+        if (message.fields[i].name == "pairs") {
+            for (DecodedValue& pair : *values)
+                name_pair(pair);
+        } else if (message.fields[i].name == "keys") {
+            std::vector<DecodedValue> names;
+            for (const DecodedValue& key : *values)
+                names.push_back(name_of(key));
+            message.fields.insert(message.fields.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                                  {"names", {std::move(names)}});
+            return;
+        }
+    }
+}
+
 namespace {
 
 constexpr std::array<StreamKind, 6> all_kinds{StreamKind::ubx, StreamKind::nmea,    StreamKind::rtcm3,

@@ -1,4 +1,4 @@
-#include "key_options.hpp"
+#include "run_options.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

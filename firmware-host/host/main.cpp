@@ -17,12 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/core/say.hpp"
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
+#include "command_line.hpp"
 #include "commands.hpp"
-#include "help_text.hpp"
-#include "misuse.hpp"
-#include "option_checks.hpp"
 
 namespace {
 

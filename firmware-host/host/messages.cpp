@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "base/core/terminal_text.hpp"
+#include "base/core/words.hpp"
 
 namespace skyloop::host {
 namespace {

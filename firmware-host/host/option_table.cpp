@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "motion/trajectory/vehicle_class.hpp"
+#include "motion/trajectory/vehicle.hpp"
 #include "run/scenario/scenario.hpp"
 
 namespace skyloop::host {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 #include "base/time/utc_time.hpp"
 
 namespace skyloop::host {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/core/job_thread.hpp"
+#include "base/core/threads.hpp"
 #include "run/emulator/emulator.hpp"
 
 namespace skyloop::host {

@@ -3,13 +3,12 @@
 
 #include <filesystem>
 
-#include "base/core/say.hpp"
-#include "base/core/spared_file.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
+#include "base/core/words.hpp"
 #include "commands.hpp"
 #include "messages.hpp"
+#include "run/emulator/real_time.hpp"
 #include "run/emulator/replay.hpp"
-#include "run/emulator/thread_priority.hpp"
 #include "run_options.hpp"
 #include "run_session.hpp"
 #include "wire/transport/open_transport.hpp"

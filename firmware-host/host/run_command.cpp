@@ -3,14 +3,22 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
 
-#include "base/core/say.hpp"
 #include "base/core/watchdog_process.hpp"
+#include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
+#include "campaigns/campaign/campaign_run.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
-#include "run/emulator/deadline_grants.hpp"
-#include "run/emulator/scenario_mistakes.hpp"
+#include "run/client/open_client.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/emulator/load_track.hpp"
+#include "run/emulator/real_time.hpp"
+#include "run/emulator/wires.hpp"
+#include "run/fault/timeline.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
 
@@ -118,6 +126,159 @@ Action add_run_command(CLI::App& app) {
                         "unless a host is given, udpout:HOST:PORT speaks first");
     command->add_option("--record", options->record, "Keep truth, fixes, satellites and bytes in this folder");
     return [options] { return run_live(*options); };
+}
+
+namespace {
+
+// The recording of a live run has the files of all wires, that of simulate those of scripted clients alone.
+bool has_all_wires(const std::filesystem::path& recording, const Scenario& scenario) {
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i) {
+        const std::size_t wires = scenario.receivers[i].ports.size();
+        const auto folder = i == 0 ? recording : recording / fmt::format("receiver{}", i);
+        std::error_code absent;
+        if (wires > 0 && !std::filesystem::exists(folder / fmt::format("port{}.in", wires - 1), absent)) return false;
+    }
+    return true;
+}
+
+// The wires keep their numbers, which are those of the recording's files.
+void lead_others_nowhere(Scenario& scenario) {
+    for (ReceiverEntry& receiver : scenario.receivers) {
+        for (std::string& port : receiver.ports) {
+            const std::size_t equals = port.find('=');
+            const std::size_t uri = equals != std::string::npos && equals < port.find(':') ? equals + 1 : 0;
+            if (!client_of_uri(port.substr(uri))) port = port.substr(0, uri) + "file:/dev/null";
+        }
+        if (receiver.ports.empty()) receiver.ports = {"file:/dev/null"};
+    }
+}
+
+void plug_in_clients_alone(const RunOptions& options, Scenario& scenario) {
+    if (!options.repeat.empty() && has_all_wires(options.repeat, scenario))
+        lead_others_nowhere(scenario);
+    else
+        keep_scripted_clients(scenario);
+}
+
+int simulate(const RunOptions& options) {
+    const Messages messages(options.verbosity);
+    auto scenario = scenario_from(options);
+    if (!scenario) return messages.error(scenario.error());
+    if (!scenario->run.duration && !ends_with_its_path(*scenario))
+        return messages.error({ErrorCode::usage,
+                               "simulate needs an end: expected --duration SECONDS, run.duration_s in the scenario, or "
+                               "a trajectory with end = \"stop\""});
+    // What a scenario tells other programs belongs to a live run, as its pty does.
+    if (options.outputs.empty())
+        std::erase_if(scenario->outputs, [](const OutputSettings& output) { return output.way != OutputWay::file; });
+    catch_stop_signals();
+    RunMode mode;
+    mode.virtual_time = true;
+    mode.now = wall_clock();
+    mode.now_steady_ns = steady_clock_ns();
+    mode.record = options.record;
+    // A scenario's pty belongs to a live run. Its scripted clients live in simulated time, and wires asked for here are
+    // opened.
+    mode.first_ports_only = !options.ports.empty();
+    mode.open_ports = mode.first_ports_only || has_scripted_client(*scenario);
+    if (mode.open_ports && !mode.first_ports_only) plug_in_clients_alone(options, *scenario);
+    if (!options.repeat.empty()) mode.repeat = options.repeat;
+    auto assembly = assemble(*scenario, data_folders(), mode);
+    if (!assembly) return messages.error(with_other_mistakes(assembly.error(), *scenario, data_folders(), mode.now));
+    if (const auto warning = vehicle_warning(*scenario)) assembly->warnings.push_back(*warning);
+    CommandQueue nobody;
+    const auto watch = RunWatch::start(*scenario, *assembly, {}, nobody);
+    if (!watch) return messages.error(watch.error());
+    RunSession session(messages, *assembly);
+    return session.run(*scenario, **watch);
+}
+
+}  // namespace
+
+Action add_simulate_command(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("simulate", "The same pipeline as fast as the machine can, on the virtual clock");
+    auto options = std::make_shared<RunOptions>();
+    add_run_options(*command, *options);
+    command->add_option("--out", options->record, "Folder for the recording")->required();
+    return [options] { return simulate(*options); };
+}
+
+namespace {
+
+std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
+
+void print_receiver(const ReceiverEntry& entry, const Station& station, bool of_several) {
+    const firmware::Receiver& receiver = station.receiver();
+    fmt::print("receiver    {}{} at {} baud, {:g} Hz\n", of_several ? station.name() + ": " : "", receiver.board().name,
+               first_baud(receiver), 1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
+    for (const std::string& port : entry.ports)
+        fmt::print("port        {}\n", port);
+    if (!entry.power.empty()) fmt::print("power       {}\n", entry.power);
+}
+
+// Without an end, what the first hour brings.
+void print_timeline(const Scenario& scenario, const Assembly& assembly) {
+    const std::vector<TimelineEntry> entries = timeline_of(scenario);
+    const Seconds span = scenario.run.duration.value_or(Seconds(3600));
+    if (!entries.empty()) fmt::print("timeline\n");
+    const TimelineSpan run{assembly.start, advanced(assembly.start, span), scenario.run.seed};
+    for (const std::string& line : timeline_text(entries, run))
+        fmt::print("  {}\n", line);
+    for (const Expectation& expectation : scenario.expectations)
+        fmt::print("expect      {}\n", on_a_terminal(expectation.title()));
+}
+
+void print_plan(const Scenario& scenario, const Assembly& assembly) {
+    const Emulator& emulator = *assembly.emulator;
+    fmt::print("scenario    {}\n", scenario.name);
+    fmt::print("navigation  {}\n", emulator.simulation().navigation().description());
+    if (const auto span = emulator.simulation().navigation().span())
+        fmt::print("            orbits from {} to {}\n", utc_text(span->first), utc_text(span->last));
+    fmt::print("start       {}\n", utc_text(assembly.start));
+    fmt::print("end         {}\n", assembly.end ? utc_text(*assembly.end) : "when stopped");
+    fmt::print("model       {}\n", model_name(scenario.model));
+    if (!assembly.trajectory.empty()) fmt::print("trajectory  {}\n", assembly.trajectory);
+    for (const std::string& found : assembly.track_details)
+        fmt::print("            {}\n", found);
+    if (assembly.scene.scene) fmt::print("scene       {}\n", assembly.scene.description);
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        print_receiver(scenario.receivers[i], emulator.stations()[i], scenario.receivers.size() > 1);
+    for (const OutputSettings& output : scenario.outputs)
+        fmt::print("output      {}\n", output.uri);
+    fmt::print("seed        {}\n", scenario.run.seed);
+    print_timeline(scenario, assembly);
+}
+
+int check(const RunOptions& options) {
+    const Messages messages(options.verbosity);
+    const auto scenario = scenario_from(options);
+    if (!scenario) return messages.error(scenario.error());
+    if (const auto columns = result_columns(*scenario, {}); !columns) return messages.error(columns.error());
+    RunMode mode;
+    mode.now = wall_clock();
+    mode.now_steady_ns = steady_clock_ns();
+    mode.virtual_time = true;
+    mode.open_ports = false;
+    mode.only_checked = true;
+    auto assembly = assemble(*scenario, data_folders(), mode);
+    if (!assembly) return messages.error(with_other_mistakes(assembly.error(), *scenario, data_folders(), mode.now));
+    for (const auto& warning : {vehicle_warning(*scenario), pause_warning(*scenario)})
+        if (warning) assembly->warnings.push_back(*warning);
+    for (const std::string& warning : assembly->warnings)
+        messages.warning(warning);
+    if (!options.verbosity.quiet) print_plan(*scenario, *assembly);
+    return 0;
+}
+
+}  // namespace
+
+Action add_check_command(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("check", "Read everything that a run would read, say what is wrong, run nothing");
+    auto options = std::make_shared<RunOptions>();
+    add_run_options(*command, *options);
+    return [options] { return check(*options); };
 }
 
 }  // namespace skyloop::host

@@ -1,7 +1,7 @@
 #include "run_options.hpp"
 #include "data_folders.hpp"
-#include "run_log.hpp"
 #include "run_session.hpp"
+#include "run_watch.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,12 +14,11 @@
 #include <limits>
 #include <system_error>
 
-#include "base/core/text_file.hpp"
-#include "base/core/utf8.hpp"
-#include "run/emulator/scenario_mistakes.hpp"
-#include "run/scenario/board_file.hpp"
+#include "base/core/files.hpp"
+#include "base/core/words.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/scenario/board_files.hpp"
 #include "run/scenario/key_catalogue.hpp"
-#include "run/scenario/scenario_changes.hpp"
 #include "run/scenario/scenario_file.hpp"
 #include "wire/transport/open_transport.hpp"
 

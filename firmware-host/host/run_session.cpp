@@ -7,11 +7,11 @@
 #include <csignal>
 #include <map>
 
-#include "base/core/say.hpp"
+#include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
 #include "progress.hpp"
+#include "run/emulator/assembly.hpp"
 #include "run/emulator/load_track.hpp"
-#include "run/emulator/run_summary.hpp"
 #include "run/emulator/wires.hpp"
 #include "run_watch.hpp"
 

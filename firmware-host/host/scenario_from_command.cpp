@@ -4,16 +4,15 @@
 #include <filesystem>
 #include <memory>
 
-#include "base/core/make_folder.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/time/utc_time.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
+#include "file_streams.hpp"
 #include "messages.hpp"
 #include "receiver/observed/log_events.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run_options.hpp"
-#include "whole_file.hpp"
 
 namespace skyloop::host {
 namespace {

@@ -10,9 +10,10 @@
 #include <set>
 #include <utility>
 
-#include "base/core/spared_file.hpp"
+#include "base/core/files.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
+#include "file_streams.hpp"
 #include "messages.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/load_scene.hpp"
@@ -20,7 +21,6 @@
 #include "study/analysis/scene_sky.hpp"
 #include "study/plot/scene_plot.hpp"
 #include "study/plot/sky_plot.hpp"
-#include "whole_file.hpp"
 
 namespace skyloop::host {
 namespace {

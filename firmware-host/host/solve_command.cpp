@@ -8,12 +8,12 @@
 #include <memory>
 #include <set>
 
-#include "base/core/spared_file.hpp"
+#include "base/core/files.hpp"
 #include "base/time/utc_time.hpp"
 #include "commands.hpp"
 #include "receiver/pvt/navigation_engine.hpp"
 #include "run/emulator/navigation_files.hpp"
-#include "run/emulator/output_file.hpp"
+#include "run/emulator/run_files.hpp"
 #include "run_session.hpp"
 #include "world/gnss/navigation_data.hpp"
 #include "world/rinex/observation_reader.hpp"

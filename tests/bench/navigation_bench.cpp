@@ -4,7 +4,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "world/gnss/foreign_records.hpp"
 #include "world/gnss/navigation_data.hpp"
 #include "world/rinex/navigation_file.hpp"

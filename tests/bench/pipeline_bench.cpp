@@ -12,10 +12,10 @@
 #include "run/emulator/assembly.hpp"
 #include "support/four_systems.hpp"
 #include "support/oracle_table.hpp"
-#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
-#include "world/propagation/free_space.hpp"
 #include "world/propagation/modern_effects.hpp"
+#include "world/propagation/propagation_effect.hpp"
 #include "world/sky/observe_sky.hpp"
 
 namespace {

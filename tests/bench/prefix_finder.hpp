@@ -5,9 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "world/scene/detail/path_tracing.hpp"
-#include "world/scene/detail/plane_sequence.hpp"
-#include "world/scene/detail/ray_lattice.hpp"
+#include "detail/path_refiner.hpp"
+#include "detail/ray_lattice.hpp"
 #include "world/scene/path_finder.hpp"
 
 namespace skyloop::bench {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "base/core/steady_clock.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
+#include "base/core/threads.hpp"
 
 namespace skyloop::bench {
 

@@ -1,5 +1,5 @@
 // A velocity of the level is turned into one of the Earth by its frame only.
-#include "base/geo/level_frame.hpp"
+#include "base/geo/simulator_frames.hpp"
 
 using namespace skyloop;
 

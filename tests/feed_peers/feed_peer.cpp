@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/geo/local_map.hpp"
+#include "base/geo/simulator_frames.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
 #include "run/feed/feed_dialect.hpp"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "world/propagation/antenna_pattern.hpp"
+#include "world/propagation/antenna_and_noise.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "firmware/receiver.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "require.hpp"
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "campaigns/campaign/campaign_folder.hpp"
-#include "campaigns/campaign/run_result.hpp"
+#include "campaigns/campaign/shard_results.hpp"
 #include "require.hpp"
 #include "run/scenario/scenario_file.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "require.hpp"
-#include "wire/transport/com_port_server.hpp"
+#include "wire/transport/rfc2217.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "firmware/config/config_handler.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 #include "require.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "run/scenario/device_file.hpp"
+#include "run/scenario/board_files.hpp"
 
 namespace {
 

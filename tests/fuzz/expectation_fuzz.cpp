@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation.hpp"
 
 namespace {
 

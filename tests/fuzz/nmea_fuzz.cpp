@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string>
 
-#include "receiver/protocol/nmea_decode.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
 #include "receiver/protocol/nmea_pubx.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "run/emulator/recorded_output.hpp"
+#include "run/emulator/read_recording.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace skyloop;

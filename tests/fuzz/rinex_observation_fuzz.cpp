@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "require.hpp"
-#include "world/rinex/observation_file.hpp"
 #include "world/rinex/observation_reader.hpp"
+#include "world/rinex/rinex_writer.hpp"
 
 namespace {
 

@@ -7,7 +7,6 @@
 #include "../support/ubx_message_types.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"

@@ -6,8 +6,8 @@
 #include "receiver/protocol/ubx_fields.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
 #include "support/four_systems.hpp"
-#include "world/flow/subframe.hpp"
-#include "world/rinex/navigation_writer.hpp"
+#include "world/flow/observations.hpp"
+#include "world/rinex/rinex_writer.hpp"
 
 namespace {
 

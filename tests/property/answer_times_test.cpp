@@ -5,7 +5,6 @@
 #include <ostream>
 
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
 #include "support/receiver_rig.hpp"
 
 namespace skyloop {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "property/statistics.hpp"
-#include "receiver/error_model/uere.hpp"
+#include "receiver/error_model/baseline.hpp"
 #include "support/model_sky.hpp"
 
 namespace skyloop {

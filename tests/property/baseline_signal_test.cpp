@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "receiver/error_model/uere.hpp"
+#include "receiver/error_model/baseline.hpp"
 #include "support/model_sky.hpp"
 #include "world/propagation/specific_attenuation.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "base/geo/local_frame.hpp"
 #include "property/statistics.hpp"
-#include "receiver/error_model/uere.hpp"
+#include "receiver/error_model/baseline.hpp"
 #include "support/model_sky.hpp"
 #include "support/modern_run.hpp"
 #include "world/propagation/ray_traced_scene.hpp"

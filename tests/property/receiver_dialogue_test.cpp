@@ -10,7 +10,6 @@
 #include "base/core/random.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "support/receiver_rig.hpp"
 

@@ -16,7 +16,7 @@
 
 #include "firmware/config/config_keys.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_names.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "support/run_parts.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "world/gnss/constants.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
 #include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {

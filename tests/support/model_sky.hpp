@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "receiver/error_model/make_error_model.hpp"
+#include "receiver/error_model/error_model.hpp"
 #include "receiver/error_model/model_effects.hpp"
 #include "world/flow/trace.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/propagation/free_space.hpp"
-#include "world/propagation/spherical_path.hpp"
+#include "world/propagation/propagation_effect.hpp"
+#include "world/propagation/ray_geometry.hpp"
 
 namespace skyloop::test {
 

@@ -12,7 +12,7 @@
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_fields.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 
 namespace skyloop::test {
 

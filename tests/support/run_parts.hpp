@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "run/emulator/assembly.hpp"
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 #include "run/scenario/scenario_file.hpp"
 #include "support/oracle_table.hpp"
 #include "wire/transport/memory.hpp"
-#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/navigation_data.hpp"
 
 namespace skyloop::test {
 

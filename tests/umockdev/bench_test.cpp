@@ -12,7 +12,7 @@
 #include "testbed.hpp"
 #include "what_is_held.hpp"
 #include "wire/devices/device_list.hpp"
-#include "wire/usb/usb_context.hpp"
+#include "wire/usb/usb_device.hpp"
 #include "wire/usb/usb_watch.hpp"
 
 namespace skyloop {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/core/bytes.hpp"
-#include "wire/usb/usb_address.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop::mock {
 

@@ -7,7 +7,7 @@
 #include "testbed.hpp"
 #include "what_is_held.hpp"
 #include "wire/hid/hid_device.hpp"
-#include "wire/usb/usb_context.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 namespace {

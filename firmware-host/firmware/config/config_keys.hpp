@@ -1,5 +1,8 @@
 /// Every configuration item that an emulated receiver can have (u-blox F9 interface description HPG 1.32, section 6;
 /// RECEIVER.md 3.5).
+///
+/// The parts of the list of configuration items; `config_keys` puts them together.
+/// Names of messages, as board files write them.
 #pragma once
 
 #include <cstddef>
@@ -100,5 +103,36 @@ constexpr std::uint32_t out_protocol(PortId port, std::uint32_t item) { return i
 constexpr std::uint32_t inf_ubx(PortId port) { return 0x2092'0001u + static_cast<std::uint32_t>(port); }
 constexpr std::uint32_t inf_nmea(PortId port) { return 0x2092'0006u + static_cast<std::uint32_t>(port); }
 }  // namespace key
+
+/// Of what the navigation does: signals, filters, time pulse, corrections.
+std::span<const ConfigKey> navigation_keys();
+/// Of ports and of the protocols on them.
+std::span<const ConfigKey> ports_keys();
+/// Of texts, sentences, hardware, power and security.
+std::span<const ConfigKey> system_keys();
+/// Items that no document has: what legacy messages store besides. They are not on the wire.
+std::span<const ConfigKey> private_keys();
+
+/// A message and the middle of its items' names: "UBX_NAV_PVT" of CFG-MSGOUT-UBX_NAV_PVT_UART1.
+struct RateKeys {
+    OutputMessage message;
+    std::string_view stem;
+};
+/// Ascending by message. A key of the group `private_message_group` is one of our own.
+std::span<const RateKeys> rate_keys();
+
+/// Groups that no interface description uses: rates of messages without a key, and what legacy messages store.
+inline constexpr std::uint32_t private_message_group = 0xFE, private_item_group = 0xFD;
+
+/// A message that is answered, or that configures, but is never sent periodically.
+struct NamedMessage {
+    UbxMessageId id;
+    std::string_view name;  ///< "MON-VER", "CFG-PRT"
+};
+
+/// What a client can poll beside what is sent periodically: MON-VER, SEC-UNIQID, the sentences that poll others, …
+std::span<const NamedMessage> polled_messages();
+/// The legacy messages of class CFG (M8 interface description, section 32.11).
+std::span<const NamedMessage> legacy_messages();
 
 }  // namespace skyloop::firmware

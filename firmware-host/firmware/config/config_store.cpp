@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "base/core/number_in.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "base/core/number_text.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "firmware/config/config_handler.hpp"
-#include "firmware/config/key_tables.hpp"
+#include "firmware/config/config_keys.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 namespace {

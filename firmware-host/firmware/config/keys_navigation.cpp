@@ -1,7 +1,7 @@
 // Configuration items: what the navigation does: signals, filters, time pulse, corrections. Ids, names and types are
 // those of the u-blox F9 interface description HPG 1.32, section 6.9; defaults those of the NEO-M9N's list
 // (RECEIVER.md 3.5.1), 0 where it has none.
-#include "firmware/config/key_tables.hpp"
+#include "firmware/config/config_keys.hpp"
 
 namespace skyloop::firmware {
 namespace {

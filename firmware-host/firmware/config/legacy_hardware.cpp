@@ -5,7 +5,7 @@
 
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/legacy_support.hpp"
-#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_device.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -3,7 +3,7 @@
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/legacy_support.hpp"
 #include "firmware/config/signal_keys.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 namespace {

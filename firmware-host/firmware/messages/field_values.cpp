@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "firmware/clock_instant.hpp"
+#include "firmware/navigation_state.hpp"
 
 namespace skyloop::firmware {
 namespace {

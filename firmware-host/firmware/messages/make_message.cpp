@@ -1,7 +1,10 @@
 #include "firmware/messages/make_message.hpp"
 
-#include "firmware/message_class.hpp"
-#include "receiver/protocol/ubx_ports.hpp"
+#include "base/core/bytes.hpp"
+#include "firmware/messages/nmea_report.hpp"
+#include "firmware/port_id.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -45,6 +48,50 @@ const std::vector<Bytes>& EpochMessages::of(UbxMessageId message, PortId port,
         return entry->second = make_message(message, context_);
     if (!report_) report_.emplace(nmea_report(context_));
     return entry->second = make_nmea_message(message, *report_);
+}
+
+namespace {
+
+constexpr std::uint32_t ubx_protocol = 1, nmea_protocol = 2;
+
+// CFG-INFMSG has a bit for each level but that of the user, which always passes.
+bool passes(std::uint64_t mask, int level) { return level == text_user || (mask >> level & 1) != 0; }
+
+Bytes inf_frame(int level, const std::string& text) {
+    const std::vector<char> characters(text.begin(), text.end());
+    switch (level) {
+        case text_error:
+            return encode_frame(InfError{characters});
+        case text_warning:
+            return encode_frame(InfWarning{characters});
+        case text_notice:
+            return encode_frame(InfNotice{characters});
+        case 3:
+            return encode_frame(InfTest{characters});
+        default:
+            return encode_frame(InfDebug{characters});
+    }
+}
+
+// MediaTek's and Airoha's receivers begin with sentences of their own instead of texts.
+bool is_own_sentence(const std::string& text) { return text.starts_with('$'); }
+
+}  // namespace
+
+std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context) {
+    const auto& [board, config, state, ports, port, following] = context;
+    std::vector<Bytes> out;
+    if (level < 0 || (level > text_debug && level != text_user) || !port_is_on(config, port)) return out;
+    const bool nmea = config.flag(key::out_protocol(port, nmea_protocol));
+    if (is_own_sentence(text)) {
+        if (nmea) out.push_back(to_bytes(Sentence(text.substr(1)).finish()));
+        return out;
+    }
+    if (nmea && passes(config.value(key::inf_nmea(port)), level))
+        out.push_back(to_bytes(encode(Txt{nmea_talker(board, config), 1, 1, level, text}, nmea_format(board, config))));
+    const bool ubx = config.flag(key::out_protocol(port, ubx_protocol)) && level <= text_debug;
+    if (ubx && passes(config.value(key::inf_ubx(port)), level)) out.push_back(inf_frame(level, text));
+    return out;
 }
 
 }  // namespace skyloop::firmware

@@ -1,12 +1,19 @@
 /// From the receiver's state to the bytes of a message.
+/// The three parts in which NAV and TIM messages are made, and what they share.
+/// What messages about satellites and about their signals share.
+/// The parts in which MON and SEC messages are made.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "firmware/messages/field_values.hpp"
 #include "firmware/messages/nmea_report.hpp"
 #include "firmware/navigation_state.hpp"
 
@@ -52,5 +59,59 @@ inline constexpr int text_error = 0, text_warning = 1, text_notice = 2, text_deb
 /// A text for people, as NMEA TXT and as UBX INF, by what the port's configuration lets through. One that begins with
 /// "$" is a whole sentence, without checksum.
 std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context);
+
+/// NAV messages of position, velocity and quality. Empty for any other.
+std::vector<Bytes> make_solution_message(UbxMessageId message, const ReportContext& context);
+/// NAV-TIME…, NAV-CLOCK and class TIM. Empty for any other.
+std::vector<Bytes> make_time_message(UbxMessageId message, const ReportContext& context);
+/// The other NAV messages without satellites: covariances, odometer, base station, fences, end of the epoch. Empty for
+/// any other.
+std::vector<Bytes> make_service_message(UbxMessageId message, const ReportContext& context);
+
+/// A DOP of a message: 0.01, 99.99 at most and where it was not computed.
+std::uint16_t dop_field(double dop, bool computed);
+/// Satellites in the solution; 0 without one.
+std::uint8_t used_satellites(const Fix& fix);
+/// The course, frozen at low speed, 1e-5 deg, 0 … 35 999 999.
+std::int32_t course_field(const NavigationState& state);
+/// 1 σ of it, 1e-5 deg, 180° at most and while it is frozen.
+std::uint32_t heading_accuracy_field(const NavigationState& state);
+
+/// NAV-SIG.
+std::vector<Bytes> make_signal_message(const ReportContext& context);
+
+/// Ascending by system and number, at most as many as a message can count.
+std::vector<SatelliteStatus> sorted_satellites(const Fix& fix);
+
+/// Where the corrections in the solution come from.
+enum class CorrectionOrigin { none, sbas, rtcm3 };
+CorrectionOrigin corrections_in_use(const NavigationState& state);
+
+/// 0 unknown, 1 healthy, 2 unhealthy.
+std::uint32_t satellite_health(const SatelliteStatus& s, const NavigationState& state);
+
+/// qualityInd: 1 searched for, 2 acquired, 3 no range, 4 code locked, 6 and 7 carrier locked too. Models that measure
+/// nothing track at 7.
+std::uint32_t satellite_quality(const SatelliteStatus& s, const NavigationState& state);
+std::uint8_t signal_quality(const Observation& observation);
+
+/// MON-HW, HW2, HW3, RF and SPAN. Empty for any other.
+std::vector<Bytes> make_hardware_message(UbxMessageId message, const ReportContext& context);
+/// MON-COMMS, TXBUF, RXBUF, IO and MSGPP. Empty for any other.
+std::vector<Bytes> make_port_message(UbxMessageId message, const ReportContext& context);
+
+/// True for firmware of the high-precision line (FWVER=HPG): two front ends, and its own numbers for ports.
+inline bool is_high_precision(const BoardProfile& board) {
+    return std::any_of(board.identity.extensions.begin(), board.identity.extensions.end(),
+                       [](const std::string& text) { return text.starts_with("FWVER=HPG"); });
+}
+
+/// A text filled up with zeros, or cut.
+template <std::size_t Size>
+std::array<char, Size> padded_text(std::string_view text) {
+    std::array<char, Size> characters{};
+    std::copy_n(text.begin(), std::min(Size, text.size()), characters.begin());
+    return characters;
+}
 
 }  // namespace skyloop::firmware

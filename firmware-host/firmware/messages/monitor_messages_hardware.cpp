@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "firmware/messages/field_values.hpp"
-#include "firmware/messages/monitor_parts.hpp"
+#include "firmware/messages/make_message.hpp"
 #include "receiver/protocol/ubx_hardware.hpp"
 
 namespace skyloop::firmware {

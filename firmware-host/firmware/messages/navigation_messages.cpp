@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "base/geo/local_frame.hpp"
-#include "firmware/base_place.hpp"
+#include "firmware/base_station.hpp"
 #include "firmware/messages/field_values.hpp"
-#include "firmware/messages/navigation_parts.hpp"
+#include "firmware/messages/make_message.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 
 namespace skyloop::firmware {

@@ -5,15 +5,12 @@
 #include <numbers>
 
 #include "base/geo/local_frame.hpp"
-#include "firmware/base_place.hpp"
-#include "firmware/error_ellipse.hpp"
+#include "firmware/base_station.hpp"
 #include "firmware/geofence.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/messages/navigation_parts.hpp"
 #include "firmware/solution_covariance.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
-#include "receiver/protocol/ubx_relative.hpp"
 #include "receiver/protocol/ubx_services.hpp"
 
 namespace skyloop::firmware {

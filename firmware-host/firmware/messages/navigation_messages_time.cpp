@@ -2,11 +2,10 @@
 #include <chrono>
 #include <cmath>
 
-#include "firmware/clock_instant.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/messages/navigation_parts.hpp"
+#include "firmware/navigation_state.hpp"
 #include "receiver/protocol/ubx_time.hpp"
 #include "world/gnss/constants.hpp"
 

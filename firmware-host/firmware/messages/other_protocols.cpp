@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "firmware/messages/reported_fix.hpp"
+#include "firmware/messages/field_values.hpp"
 
 namespace skyloop::firmware {
 namespace {

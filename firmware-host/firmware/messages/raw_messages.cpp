@@ -3,10 +3,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "firmware/clock_instant.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/messages/satellite_parts.hpp"
+#include "firmware/navigation_state.hpp"
 #include "receiver/protocol/ubx_raw.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
 #include "world/gnss/constants.hpp"

@@ -4,12 +4,11 @@
 #include <chrono>
 #include <cmath>
 
-#include "firmware/base_place.hpp"
-#include "firmware/message_class.hpp"
+#include "firmware/base_station.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/port_id.hpp"
 #include "receiver/protocol/rtcm3.hpp"
-#include "receiver/protocol/rtcm3_msm.hpp"
 #include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {

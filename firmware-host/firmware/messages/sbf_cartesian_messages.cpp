@@ -1,4 +1,4 @@
-#include "firmware/messages/sbf_cartesian_messages.hpp"
+#include "firmware/messages/sbf_messages.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -6,8 +6,6 @@
 
 #include "base/geo/local_frame.hpp"
 #include "firmware/messages/other_protocols.hpp"
-#include "firmware/messages/sbf_parts.hpp"
-#include "firmware/messages/sbf_status_messages.hpp"
 
 namespace skyloop::firmware {
 namespace {

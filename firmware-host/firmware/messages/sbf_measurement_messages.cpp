@@ -1,10 +1,9 @@
-#include "firmware/messages/sbf_measurement_messages.hpp"
+#include "firmware/messages/sbf_messages.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/clock_instant.hpp"
-#include "firmware/messages/sbf_parts.hpp"
+#include "firmware/navigation_state.hpp"
 #include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {

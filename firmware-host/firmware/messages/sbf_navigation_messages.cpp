@@ -4,11 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/core/bit_field.hpp"
-#include "firmware/messages/sbf_measurement_messages.hpp"
-#include "firmware/messages/sbf_parts.hpp"
-#include "receiver/protocol/sbf_navigation_blocks.hpp"
-#include "world/gnss/broadcast_inav.hpp"
+#include "base/core/bytes.hpp"
+#include "firmware/messages/sbf_messages.hpp"
+#include "receiver/protocol/sbf_raw_blocks.hpp"
+#include "world/gnss/broadcast_galileo_beidou.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 
 namespace skyloop::firmware {

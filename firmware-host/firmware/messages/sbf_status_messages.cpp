@@ -1,10 +1,9 @@
-#include "firmware/messages/sbf_status_messages.hpp"
+#include "firmware/messages/sbf_messages.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include "base/geo/local_frame.hpp"
-#include "firmware/messages/sbf_parts.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -7,12 +7,11 @@
 #include <array>
 #include <cmath>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
-#include "firmware/septentrio/modes.hpp"
-#include "firmware/septentrio/station_output.hpp"
+#include "firmware/septentrio/rover_and_station.hpp"
 
 namespace skyloop::firmware {
 

@@ -1,10 +1,10 @@
-#include "firmware/septentrio/settings_table.hpp"
+#include "firmware/septentrio/settings.hpp"
 
 #include <algorithm>
 #include <array>
 
-#include "base/core/letter_case.hpp"
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/words.hpp"
 #include "firmware/nmea_commands.hpp"
 
 namespace skyloop::firmware {

@@ -12,8 +12,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/core/letter_case.hpp"
-#include "base/core/terminal_text.hpp"
+#include "base/core/words.hpp"
 
 namespace skyloop {
 namespace {

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <utility>
 
-#include "base/core/letter_case.hpp"
+#include "base/core/words.hpp"
 
 namespace skyloop {
 namespace {

@@ -12,7 +12,7 @@
 
 #include <tl/expected.hpp>
 
-#include "base/core/table_line.hpp"
+#include "base/core/table_text.hpp"
 
 namespace skyloop {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace skyloop {
 
@@ -24,6 +25,14 @@ Angle Attitude::pitch() const {
 Angle Attitude::yaw() const {
     const Eigen::Quaterniond& q = body_to_ned_;
     return Angle::radians(std::atan2(2 * (q.w() * q.z() + q.x() * q.y()), 1 - 2 * (q.y() * q.y() + q.z() * q.z())));
+}
+
+Eigen::Quaterniond ned_to_ecef(const Geodetic& place) {
+    // About Earth's axis by the longitude, then the north pole's frame tipped to the latitude.
+    const Eigen::Quaterniond turned(Eigen::AngleAxisd(place.longitude.rad(), Eigen::Vector3d::UnitZ()));
+    const Eigen::Quaterniond tipped(
+        Eigen::AngleAxisd(-place.latitude.rad() - std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
+    return turned * tipped;
 }
 
 }  // namespace skyloop

@@ -1,4 +1,5 @@
 /// Coordinated universal time, its calendar and its leap seconds.
+/// The week of a time of week that came with a date.
 #pragma once
 
 #include <compare>
@@ -91,5 +92,9 @@ UtcTime utc_of_local(const UtcTime& local, int minutes);
 UtcTime midnight_of(const UtcTime& day, int days_later);
 /// ISO 8601 with `decimals` (0 … 9) digits of fraction, cut off and not rounded as a clock shows them, and a final Z.
 std::string format_utc(const UtcTime& utc, int decimals = 3);
+
+/// The GPS week in which a time of week is nearest to a date that was told with it, which may be of a little earlier or
+/// later; nothing for what is no calendar time. @param tow of GPS, within a week
+std::optional<std::int64_t> week_of_date(const UtcTime& date, Nanoseconds tow);
 
 }  // namespace skyloop

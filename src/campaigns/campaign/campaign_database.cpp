@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "campaigns/campaign/campaign_folder.hpp"
-#include "campaigns/campaign/shard_file.hpp"
+#include "campaigns/campaign/shard_results.hpp"
 
 namespace skyloop {
 namespace {

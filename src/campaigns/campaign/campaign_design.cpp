@@ -8,9 +8,9 @@
 #include <numbers>
 #include <string>
 
-#include "base/core/number_in.hpp"
-#include "base/core/overloaded.hpp"
+#include "base/core/number_text.hpp"
 #include "base/core/random.hpp"
+#include "base/core/std_additions.hpp"
 
 namespace skyloop {
 namespace {

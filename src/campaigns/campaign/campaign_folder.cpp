@@ -8,9 +8,7 @@
 #include <cerrno>
 #include <nlohmann/json.hpp>
 
-#include "base/core/make_folder.hpp"
-#include "base/core/replace_file.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 
 namespace skyloop {
 namespace {

@@ -11,7 +11,7 @@
 #include "base/core/result.hpp"
 #include "campaigns/campaign/keyed_files.hpp"
 #include "run/scenario/campaign_settings.hpp"
-#include "run/scenario/scenario_changes.hpp"
+#include "run/scenario/scenario_file.hpp"
 
 namespace skyloop {
 

@@ -1,18 +1,128 @@
+// Figures of one run.
 #include "campaigns/campaign/campaign_run.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "base/core/spelling.hpp"
-#include "campaigns/campaign/run_metrics.hpp"
+#include "base/core/words.hpp"
+#include "base/geo/local_frame.hpp"
 #include "detail/vehicle_run.hpp"
 #include "run/emulator/load_track.hpp"
 #include "run/emulator/wires.hpp"
+#include "run/fault/run_observer.hpp"
 #include "run/verdict/judge.hpp"
+#include "study/analysis/statistics.hpp"
 
 namespace skyloop {
+
+/// Names of all figures, units in them, in the order of tables: fix_share, horizontal_error_p95_m, …
+std::span<const std::string_view> metric_names();
+
+/// Watches the solutions of the first receiver, as fixes.csv holds them. State: two numbers an epoch with a fix.
+class RunMetrics : public RunObserver {
+public:
+    explicit RunMetrics(GpsTime start) : start_(start) {}
+    void on_epoch(const EpochSeen& seen) override;
+    /// In the order of metric_names(). Nothing where there is none, such as errors of a run without a fix.
+    [[nodiscard]] std::vector<std::optional<double>> values() const;
+
+private:
+    struct Sum {
+        double sum = 0;
+        std::uint64_t count = 0;
+        void add(double value) { sum += value, ++count; }
+        [[nodiscard]] std::optional<double> mean() const {
+            return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
+        }
+    };
+    void follow_fix(GpsTime now, bool has_fix);
+
+    GpsTime start_;
+    std::uint64_t epochs_ = 0, outages_ = 0;
+    std::vector<double> horizontal_, vertical_;  // m
+    std::optional<GpsTime> first_fix_, lost_at_, last_epoch_;
+    Seconds longest_outage_{0};
+    Sum used_, visible_, hdop_, cn0_;
+};
+
+namespace {
+
+constexpr std::array<std::string_view, 15> all_metric_names{
+    "epochs",
+    "fix_share",
+    "time_to_first_fix_s",
+    "outages",
+    "longest_outage_s",
+    "horizontal_error_p50_m",
+    "horizontal_error_p95_m",
+    "horizontal_error_max_m",
+    "vertical_error_p50_m",
+    "vertical_error_p95_m",
+    "vertical_error_max_m",
+    "satellites_used_mean",
+    "satellites_visible_mean",
+    "hdop_mean",
+    "cn0_mean_dbhz",
+};
+
+void append_errors(std::vector<std::optional<double>>& values, std::span<const double> errors) {
+    const auto statistics = sample_statistics(errors);
+    if (!statistics) return values.resize(values.size() + 3);
+    values.insert(values.end(), {statistics->median, statistics->p95, statistics->max});
+}
+
+}  // namespace
+
+std::span<const std::string_view> metric_names() { return all_metric_names; }
+
+void RunMetrics::follow_fix(GpsTime now, bool has_fix) {
+    if (has_fix && !first_fix_) first_fix_ = now;
+    if (!has_fix && first_fix_ && !lost_at_) lost_at_ = now, ++outages_;
+    if (lost_at_) longest_outage_ = std::max(longest_outage_, difference(now, *lost_at_));
+    if (has_fix) lost_at_.reset();
+    last_epoch_ = now;
+}
+
+void RunMetrics::on_epoch(const EpochSeen& seen) {
+    if (seen.station != 0) return;
+    const Fix& fix = seen.trace.epoch.fix;
+    ++epochs_;
+    follow_fix(seen.now, fix.has_position());
+    visible_.add(static_cast<double>(seen.trace.sky.satellites.size()));
+    for (const SatelliteStatus& satellite : fix.satellites)
+        if (satellite.cn0) cn0_.add(satellite.cn0->value());
+    if (!fix.has_position()) return;
+    const auto error = LocalFrame(seen.trace.truth.geodetic).to_enu(to_ecef(fix.position)).vector();
+    horizontal_.push_back(std::hypot(error.x(), error.y()));
+    vertical_.push_back(std::abs(error.z()));
+    used_.add(fix.satellites_used());
+    hdop_.add(fix.dop.hdop);
+}
+
+std::vector<std::optional<double>> RunMetrics::values() const {
+    std::vector<std::optional<double>> values{static_cast<double>(epochs_)};
+    const auto fixes = static_cast<double>(horizontal_.size());
+    values.push_back(epochs_ > 0 ? std::optional(fixes / static_cast<double>(epochs_)) : std::nullopt);
+    values.push_back(first_fix_ ? std::optional(difference(*first_fix_, start_).value()) : std::nullopt);
+    values.emplace_back(static_cast<double>(outages_));
+    values.emplace_back(longest_outage_.value());
+    append_errors(values, horizontal_);
+    append_errors(values, vertical_);
+    for (const Sum* sum : {&used_, &visible_, &hdop_, &cn0_})
+        values.push_back(sum->mean());
+    return values;
+}
+
 namespace {
 
 bool starts_now(const Scenario& scenario) {

@@ -9,7 +9,7 @@
 #include "base/core/result.hpp"
 #include "base/core/watchdog_process.hpp"
 #include "campaigns/campaign/campaign_plan.hpp"
-#include "campaigns/campaign/run_result.hpp"
+#include "campaigns/campaign/shard_results.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/data_folders.hpp"
 #include "run/scenario/scenario.hpp"

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
-#include "base/core/number_in.hpp"
-#include "detail/shown_text.hpp"
+#include "base/core/number_text.hpp"
+#include "detail/shown_names.hpp"
 #include "detail/sqlite_reader.hpp"
 
 namespace skyloop {

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "detail/names.hpp"
 #include "detail/page_parts.hpp"
+#include "detail/shown_names.hpp"
 #include "study/analysis/statistics.hpp"
-#include "study/plot/distribution_plot.hpp"
-#include "study/plot/level_plots.hpp"
-#include "study/plot/trend_plot.hpp"
+#include "study/plot/metric_plots.hpp"
+#include "study/plot/rate_plots.hpp"
 
 namespace skyloop {
 namespace {

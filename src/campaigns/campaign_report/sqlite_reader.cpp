@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "detail/shown_text.hpp"
+#include "detail/shown_names.hpp"
 
 namespace skyloop {
 namespace {

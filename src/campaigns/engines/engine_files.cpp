@@ -5,9 +5,8 @@
 #include <fstream>
 #include <system_error>
 
-#include "base/core/make_folder.hpp"
-#include "base/core/number_in.hpp"
-#include "base/core/replace_file.hpp"
+#include "base/core/files.hpp"
+#include "base/core/number_text.hpp"
 
 namespace skyloop {
 

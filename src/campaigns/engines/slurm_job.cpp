@@ -8,10 +8,9 @@
 #include <string_view>
 #include <thread>
 
-#include "base/core/make_folder.hpp"
-#include "base/core/number_in.hpp"
+#include "base/core/files.hpp"
+#include "base/core/number_text.hpp"
 #include "base/core/process.hpp"
-#include "base/core/text_file.hpp"
 #include "campaigns/engines/engine_files.hpp"
 
 namespace skyloop {

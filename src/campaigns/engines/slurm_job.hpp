@@ -8,8 +8,8 @@
 
 #include "base/core/result.hpp"
 #include "base/core/units.hpp"
+#include "campaigns/engines/engine_scripts.hpp"
 #include "campaigns/engines/engine_task.hpp"
-#include "campaigns/engines/slurm_scripts.hpp"
 
 namespace skyloop {
 

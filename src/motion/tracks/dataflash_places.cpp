@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 #include "base/time/gps_time.hpp"
 
 namespace skyloop {

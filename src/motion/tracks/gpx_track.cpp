@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/core/letter_case.hpp"
+#include "base/core/words.hpp"
 #include "base/core/written_place.hpp"
 #include "detail/text_track.hpp"
 #include "detail/xml_tree.hpp"

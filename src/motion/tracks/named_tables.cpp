@@ -8,10 +8,10 @@
 #include <functional>
 #include <utility>
 
-#include "base/core/column_name.hpp"
-#include "base/core/letter_case.hpp"
-#include "base/core/number_in.hpp"
-#include "detail/table_cells.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/table_text.hpp"
+#include "base/core/words.hpp"
+#include "detail/text_track.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "detail/table_cells.hpp"
+#include "detail/text_track.hpp"
 
 namespace skyloop {
 namespace {

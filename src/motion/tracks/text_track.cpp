@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "motion/trajectory/track_doubts.hpp"
+#include "motion/trajectory/track.hpp"
 
 namespace skyloop {
 namespace {

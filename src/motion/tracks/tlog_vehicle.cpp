@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "receiver/protocol/mavlink_modes.hpp"
+#include "receiver/protocol/mavlink.hpp"
 
 namespace skyloop {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "detail/local_maps.hpp"
+#include "detail/flight_log.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,10 +1,10 @@
-#include "motion/trajectory/arrival_rhythm.hpp"
+#include "motion/trajectory/source_clock.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 
 namespace skyloop {
 namespace {

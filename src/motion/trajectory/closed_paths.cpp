@@ -1,4 +1,4 @@
-#include "motion/trajectory/closed_paths.hpp"
+#include "motion/trajectory/generated_path.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "detail/smooth_step.hpp"
-#include "detail/steered_shape.hpp"
+#include "detail/steered_parts.hpp"
 #include "motion/trajectory/waypoint_plan.hpp"
 
 namespace skyloop {

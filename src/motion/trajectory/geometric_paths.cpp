@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/geo/geodesic.hpp"
+#include "base/geo/geodetic.hpp"
 #include "base/geo/local_frame.hpp"
 
 namespace skyloop {

@@ -12,7 +12,6 @@
 
 #include "base/core/units.hpp"
 #include "motion/trajectory/trajectory.hpp"
-#include "motion/trajectory/truth_sample.hpp"
 
 namespace skyloop {
 

@@ -9,7 +9,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include "motion/trajectory/vehicle_class.hpp"
+#include "motion/trajectory/vehicle.hpp"
 
 namespace skyloop {
 

@@ -1,4 +1,4 @@
-#include "motion/trajectory/path_sequence.hpp"
+#include "motion/trajectory/generated_path.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include "detail/quintic_piece.hpp"
+#include "detail/knot_curve.hpp"
 #include "detail/smooth_step.hpp"
-#include "detail/steered_joint.hpp"
+#include "detail/steered_parts.hpp"
 #include "detail/waypoint_parts.hpp"
 
 namespace skyloop {

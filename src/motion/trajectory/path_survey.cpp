@@ -7,7 +7,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "base/geo/body_frame.hpp"
+#include "base/geo/attitude.hpp"
 #include "base/geo/local_frame.hpp"
 
 namespace skyloop {

@@ -8,7 +8,7 @@
 
 #include "base/core/result.hpp"
 #include "motion/trajectory/trajectory.hpp"
-#include "motion/trajectory/vehicle_class.hpp"
+#include "motion/trajectory/vehicle.hpp"
 
 namespace skyloop {
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "motion/trajectory/geodesic_plane.hpp"
 #include "motion/trajectory/shaped_path.hpp"
 #include "motion/trajectory/track.hpp"
 #include "motion/trajectory/trajectory.hpp"

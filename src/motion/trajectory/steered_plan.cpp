@@ -8,10 +8,8 @@
 #include <numeric>
 #include <optional>
 
-#include "detail/passed_places.hpp"
 #include "detail/smooth_step.hpp"
-#include "detail/steered_shape.hpp"
-#include "detail/turn_speed.hpp"
+#include "detail/steered_parts.hpp"
 #include "detail/waypoint_parts.hpp"
 
 namespace skyloop {

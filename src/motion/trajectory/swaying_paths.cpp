@@ -1,4 +1,4 @@
-#include "motion/trajectory/swaying_paths.hpp"
+#include "motion/trajectory/generated_path.hpp"
 
 #include <array>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/core/random.hpp"
 #include "detail/smooth_step.hpp"
-#include "motion/trajectory/speed_profile.hpp"
+#include "motion/trajectory/vehicle.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,8 +1,11 @@
 /// Recorded paths as rows, whatever format they came in, and their cleaning.
+/// Rows of which their recorder did not know the place, and speeds in another unit (FEEDS.md 1.5).
+/// Noise of recorded positions, and its removal.
 #pragma once
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,7 +14,7 @@
 #include "base/geo/attitude.hpp"
 #include "base/geo/frames.hpp"
 #include "base/time/gps_time.hpp"
-#include "motion/trajectory/vehicle_class.hpp"
+#include "motion/trajectory/vehicle.hpp"
 
 namespace skyloop {
 
@@ -81,5 +84,51 @@ enum class GapPolicy {
 /// the notes, when fewer than two rows are left.
 /// @returns the gaps that are to be bridged
 Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap, GapPolicy policy = GapPolicy::bridge);
+
+/// Takes out the rows at latitude 0, longitude 0, where recorders put places that they do not know, unless all are
+/// there. A jump of such a row is that of the next one. Says what was done, of so many rows of the file; empty:
+/// nothing.
+std::string leave_out_zero_places(Track& track, std::size_t rows);
+
+/// Upwards, m/s, from the heights of the rows beside that are at most 30 s away: the slope of the parabola through
+/// three of them, or of a line.
+double climb_by_heights(std::span<const TrackRow> rows, std::size_t row);
+
+/// The middle ratio of the speeds that rows tell to those of their places, where the vehicle moves; nothing where too
+/// few tell one.
+std::optional<double> speed_ratio(std::span<const TrackRow> rows);
+
+/// Takes the velocities from rows whose speeds are in another unit than metres per second, by that ratio. Says so;
+/// empty: they are not.
+std::string leave_out_foreign_speeds(Track& track);
+
+/// Whether the rows of a track are smoothed before the curve is led through them.
+enum class Smoothing {
+    none,    ///< the curve goes through the rows
+    noise,   ///< by the noise that the rows show, where it is more than the vehicle's motion could be
+    sensor,  ///< as positions of a satellite receiver: 1.5 m in plan, 3 m up
+};
+
+/// Standard deviations, m.
+struct PositionNoise {
+    double in_plan = 0, up = 0;
+};
+
+/// The noise of the rows, by the median of their fourth differences, less what a vehicle's white jerk makes of them: of
+/// steps h, 2/3 q h⁵ (the integral of the third difference's quadratic B-spline), where white noise σ makes 70 σ². Zero
+/// where the motion alone explains them. Rows that are not evenly spaced are left out.
+PositionNoise noise_of(const Track& track, VehicleClass vehicle);
+
+/// What smoothing did.
+struct SmoothingReport {
+    std::optional<PositionNoise> taken{};  ///< nothing: the rows were kept
+    std::size_t outliers = 0;              ///< rows further than 5 σ from where the motion led, which did not count
+    double largest_shift = 0;              ///< of a row that counts, m
+};
+
+/// Moves the rows onto the path that a Rauch–Tung–Striebel smoother gives (FEEDS.md 1.13.2, step 3): white jerk of the
+/// vehicle's density on each axis, positions with this noise, velocities, where they are told, with 0.3 m/s. All rows
+/// get a velocity. Works from jump to jump.
+SmoothingReport smooth_track(Track& track, VehicleClass vehicle, Smoothing smoothing);
 
 }  // namespace skyloop

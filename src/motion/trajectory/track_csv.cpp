@@ -9,15 +9,13 @@
 #include <set>
 #include <utility>
 
-#include "base/core/number_in.hpp"
-#include "base/core/table_line.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/table_text.hpp"
 #include "base/core/written_place.hpp"
 #include "base/geo/local_frame.hpp"
 #include "base/time/utc_time.hpp"
-#include "detail/track_cells.hpp"
-#include "detail/track_columns.hpp"
-#include "detail/track_dates.hpp"
-#include "motion/trajectory/track_doubts.hpp"
+#include "detail/track_table.hpp"
+#include "motion/trajectory/track.hpp"
 
 namespace skyloop {
 namespace {

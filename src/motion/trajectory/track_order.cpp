@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 
 namespace skyloop {
 namespace {

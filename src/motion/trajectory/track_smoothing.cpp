@@ -1,4 +1,4 @@
-#include "motion/trajectory/track_smoothing.hpp"
+#include "motion/trajectory/track.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 #include "base/geo/local_frame.hpp"
 
 namespace skyloop {

@@ -1,14 +1,35 @@
 /// The article's sensor model: DOP times the spread of the satellites' delays.
+/// From the delays of satellites to the scale of the position error.
+/// The sensor model with one attenuation for the whole path.
 #pragma once
 
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "receiver/error_model/error_model.hpp"
 #include "receiver/error_model/fix_builder.hpp"
-#include "receiver/error_model/position_noise.hpp"
-#include "receiver/error_model/uere.hpp"
+#include "receiver/error_model/model_parameters.hpp"
+#include "world/flow/arrivals.hpp"
+#include "world/flow/fix.hpp"
 
 namespace skyloop {
+
+/// User equivalent range error of one satellite: the fractions of its delays that are left uncorrected, and the whole
+/// detour of a reflected path (MODELS.md 3.9 and D-09).
+Metres user_equivalent_range_error(const Arrival& arrival, const BaselineParameters& parameters);
+
+/// Spread over satellites: sample standard deviation (n − 1), or root mean square. 0 for fewer than two values or none.
+Metres uere_spread(std::span<const Metres> errors, UereStatistic statistic);
+
+/// The scale of an epoch's position error.
+struct UereScale {
+    Metres sigma_uere;
+    Metres position_error;  ///< E = PDOP·σ_uere, three-dimensional
+};
+/// σ_uere over the used satellites of `fix`, and E with its PDOP (MODELS.md 3.9).
+/// @param fix its satellites are those of `arrivals`, in the same order
+UereScale uere_scale(const Fix& fix, const Arrivals& arrivals, const BaselineParameters& parameters);
 
 /// Adds noise of scale E = PDOP·σ_uere to the true position, in ECEF, white from epoch to epoch; velocity and course
 /// follow from the noised positions (MODELS.md 3.5–3.10, D-08 … D-11).
@@ -29,6 +50,20 @@ private:
     BaselineParameters parameters_;
     FixBuilder builder_;
     PositionNoise noise_;
+};
+
+/// The article's model with WholePathLoss in the place of the layered atmosphere (MODELS.md section 6). The difference
+/// lies in what arrives, so the fix is made like the baseline's, from a random stream of its own.
+class WholePath : public ErrorModel {
+public:
+    WholePath(const BaselineParameters& parameters, const SensorContext& context)
+        : baseline_(parameters, context, "whole-path.position") {}
+    Fix fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) override {
+        return baseline_.fix(truth, sky, arrivals);
+    }
+
+private:
+    Baseline baseline_;
 };
 
 }  // namespace skyloop

@@ -1,11 +1,7 @@
 #include "receiver/error_model/model_effects.hpp"
 
-#include "world/propagation/layered_atmosphere_loss.hpp"
-#include "world/propagation/link_budget.hpp"
-#include "world/propagation/niell_troposphere_delay.hpp"
-#include "world/propagation/refraction_delay.hpp"
-#include "world/propagation/tec_ionosphere_delay.hpp"
-#include "world/propagation/whole_path_loss.hpp"
+#include "world/propagation/sensor_model_delays.hpp"
+#include "world/propagation/sensor_model_losses.hpp"
 
 namespace skyloop {
 namespace {

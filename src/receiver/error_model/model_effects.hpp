@@ -9,14 +9,11 @@
 #include "base/core/result.hpp"
 #include "base/geo/geoid.hpp"
 #include "base/time/utc_time.hpp"
-#include "receiver/error_model/model_kind.hpp"
-#include "receiver/error_model/parameters.hpp"
-#include "world/gnss/navigation_source.hpp"
-#include "world/propagation/atmosphere_parameters.hpp"
-#include "world/propagation/effect.hpp"
-#include "world/propagation/link_budget_parameters.hpp"
+#include "receiver/error_model/model_parameters.hpp"
+#include "world/gnss/ephemeris.hpp"
 #include "world/propagation/named_ionosphere_maps.hpp"
-#include "world/propagation/whole_path_parameters.hpp"
+#include "world/propagation/propagation_effect.hpp"
+#include "world/propagation/propagation_parameters.hpp"
 
 namespace skyloop {
 

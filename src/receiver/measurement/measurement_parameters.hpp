@@ -1,7 +1,7 @@
 /// Every number of the measurement engine.
 #pragma once
 
-#include "base/core/error_term.hpp"
+#include "base/core/random.hpp"
 #include "receiver/measurement/receiver_clock.hpp"
 #include "receiver/measurement/tracking_jitter.hpp"
 

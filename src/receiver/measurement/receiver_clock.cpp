@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/core/gauss_markov.hpp"
+#include "base/core/random.hpp"
 #include "world/gnss/constants.hpp"
 
 namespace skyloop {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "receiver/measurement/scintillation.hpp"
+#include "receiver/measurement/tracking_jitter.hpp"
 #include "world/gnss/constants.hpp"
 
 namespace skyloop {

@@ -1,15 +1,67 @@
+// What satellites broadcast while some of them say that they are not to be used.
 #include "receiver/measurement/subframe_reception.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 
-#include "detail/warned_broadcast.hpp"
-#include "world/gnss/broadcast_d1.hpp"
+#include "world/flow/observations.hpp"
+#include "world/gnss/broadcast_galileo_beidou.hpp"
 #include "world/gnss/broadcast_glonass.hpp"
-#include "world/gnss/broadcast_inav.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
+#include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
+
+/// A source whose records are unhealthy for the satellites that are observed as called unhealthy, in the bits of their
+/// own system: data and all signals bad (IS-GPS-200, 20.3.3.3.1.4, of QZSS likewise), all signals out of service
+/// (Galileo OS SIS ICD, as RINEX 3.05, table A8, keeps it), SatH1 of BeiDou, the first bit of B_n of GLONASS.
+class WarnedBroadcast : public NavigationSource {
+public:
+    /// @param sent must outlive this
+    WarnedBroadcast(const NavigationSource& sent, const Observations& observations);
+
+    [[nodiscard]] std::vector<SatelliteId> satellites() const override { return sent_.satellites(); }
+    [[nodiscard]] std::optional<Ephemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
+    [[nodiscard]] const BroadcastIonosphere& ionosphere() const override { return sent_.ionosphere(); }
+    [[nodiscard]] std::optional<TimeSpan> span() const override { return sent_.span(); }
+    [[nodiscard]] std::string description() const override { return sent_.description(); }
+
+private:
+    const NavigationSource& sent_;
+    std::set<SatelliteId> called_unhealthy_;
+};
+
+namespace {
+
+int unhealthy_bits(Constellation constellation) {
+    switch (constellation) {
+        case Constellation::gps:
+        case Constellation::qzss:
+            return 0b111111;
+        case Constellation::galileo:
+            return 0b010'010'010;
+        case Constellation::glonass:
+            return 0b100;
+        default:
+            return 1;
+    }
+}
+
+}  // namespace
+
+WarnedBroadcast::WarnedBroadcast(const NavigationSource& sent, const Observations& observations) : sent_(sent) {
+    for (const Observation& o : observations.signals)
+        if (o.called_unhealthy) called_unhealthy_.insert(o.satellite);
+}
+
+std::optional<Ephemeris> WarnedBroadcast::ephemeris(SatelliteId satellite, GpsTime time) const {
+    std::optional<Ephemeris> record = sent_.ephemeris(satellite, time);
+    if (record && called_unhealthy_.contains(satellite))
+        std::visit([&](auto& r) { r.health = unhealthy_bits(satellite.constellation); }, *record);
+    return record;
+}
+
 namespace {
 
 constexpr std::chrono::milliseconds travel_time{70};  // a medium one; the true one lies within 20 ms of it

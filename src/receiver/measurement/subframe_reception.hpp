@@ -9,8 +9,7 @@
 
 #include "base/time/utc_time.hpp"
 #include "world/flow/observations.hpp"
-#include "world/flow/subframe.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
 

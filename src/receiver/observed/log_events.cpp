@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 
 namespace skyloop {
 namespace {

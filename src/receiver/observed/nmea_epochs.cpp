@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 #include "detail/observed_parts.hpp"
-#include "receiver/protocol/nmea_decode.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
 #include "receiver/protocol/nmea_satellites.hpp"
 
 namespace skyloop {

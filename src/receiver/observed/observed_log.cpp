@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 #include "detail/observed_parts.hpp"
 #include "receiver/observed/dataflash.hpp"
 #include "receiver/observed/ulog.hpp"

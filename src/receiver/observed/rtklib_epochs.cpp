@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/core/number_in.hpp"
-#include "base/core/table_line.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/table_text.hpp"
 #include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
 

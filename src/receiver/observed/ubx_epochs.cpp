@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "base/time/week_of_date.hpp"
+#include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
 #include "receiver/protocol/ubx_inertial.hpp"
 #include "receiver/protocol/ubx_nav.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 #include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
 #include "receiver/observed/ulog.hpp"

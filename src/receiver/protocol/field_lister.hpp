@@ -4,19 +4,25 @@
 /// `name` as it is; `name*1e-7`, `name*4e-2` or `name*2^-32` scaled; `name!65535` missing when the raw number is 65535;
 /// `-name` not shown; `name[a b c]` a list of groups with those names. A group inside a message takes its names in
 /// place.
+///
+/// The fields of one message of each protocol; decode_piece() puts them together.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "base/core/bytes.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 #include "receiver/protocol/field_list.hpp"
+#include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop {
 
@@ -136,5 +142,22 @@ private:
     std::vector<DecodedField> fields_;
     bool fit_ = true;
 };
+
+/// How a UBX message with a known layout is listed.
+struct UbxListing {
+    UbxMessageId id;
+    /// The message's fields; nothing when the payload is not of this layout.
+    std::optional<std::vector<DecodedField>> (*list)(ByteSpan payload);
+    bool (*names_fit)();  ///< as many names as fields
+};
+
+/// All of them. A message with several layouts stands there several times; the first that fits holds.
+std::span<const UbxListing> ubx_listings();
+
+/// Fills fields or payload of a message whose protocol and size are set.
+void list_ubx(const UbxFrameView& frame, DecodedMessage& message);
+void list_nmea(const SentenceView& sentence, DecodedMessage& message);
+/// @param payload between length and CRC
+void list_rtcm3(ByteSpan payload, DecodedMessage& message);
 
 }  // namespace skyloop

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "receiver/protocol/sbf_cartesian_blocks.hpp"
-#include "receiver/protocol/sbf_measurement_blocks.hpp"
-#include "receiver/protocol/sbf_navigation_blocks.hpp"
+#include "receiver/protocol/sbf_raw_blocks.hpp"
 #include "receiver/protocol/sbf_status_blocks.hpp"
 
 namespace skyloop {

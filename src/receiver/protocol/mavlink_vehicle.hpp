@@ -3,6 +3,8 @@
 /// Fields, units and the bytes for the checksum: MAVLink's common.xml, in the order of the wire (by descending size,
 /// extensions behind). North, east, down are those of the place; body axes are forward, right, down; quaternions have
 /// the scalar first and turn body axes to north, east, down.
+///
+/// The one list of the MAVLink messages that are known here.
 #pragma once
 
 #include <array>
@@ -222,5 +224,20 @@ struct MavlinkOdometry {
     std::uint8_t estimator_type = 0;
     std::int8_t quality = 0;  ///< %; 0 unknown, −1 failed
 };
+
+template <class... Message>
+struct MavlinkMessages {
+    /// Calls `f.template operator()<Message>()` for one after the other, until one says true; whether one did.
+    template <class F>
+    static bool any(F&& f) {
+        return (f.template operator()<Message>() || ...);
+    }
+};
+
+using KnownMavlinkMessages =
+    MavlinkMessages<MavlinkHeartbeat, MavlinkSystemTime, MavlinkGpsRawInt, MavlinkAttitude, MavlinkAttitudeQuaternion,
+                    MavlinkLocalPositionNed, MavlinkGlobalPositionInt, MavlinkGpsGlobalOrigin, MavlinkCommandInt,
+                    MavlinkCommandLong, MavlinkCommandAck, MavlinkSimState, MavlinkHilGps, MavlinkHilStateQuaternion,
+                    MavlinkGpsInput, MavlinkGpsRtcmData, MavlinkOdometry>;
 
 }  // namespace skyloop

@@ -7,7 +7,7 @@
 
 #include "base/core/units.hpp"
 #include "base/time/utc_time.hpp"
-#include "receiver/protocol/nmea_version.hpp"
+#include "receiver/protocol/nmea_satellites.hpp"
 
 namespace skyloop {
 

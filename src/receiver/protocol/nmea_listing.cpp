@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "base/core/number_in.hpp"
-#include "receiver/protocol/message_listing.hpp"
+#include "base/core/number_text.hpp"
+#include "receiver/protocol/field_lister.hpp"
 
 namespace skyloop {
 namespace {

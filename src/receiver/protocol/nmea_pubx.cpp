@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/core/number_in.hpp"
-#include "detail/nmea_encoding.hpp"
-#include "detail/nmea_field_reader.hpp"
+#include "base/core/number_text.hpp"
+#include "detail/nmea_field_text.hpp"
 
 namespace skyloop {
 namespace {

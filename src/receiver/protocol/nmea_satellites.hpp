@@ -1,14 +1,17 @@
 /// How NMEA 0183 names systems, satellites and signals (RECEIVER.md 5.6).
+/// Layout variants of NMEA 0183.
 #pragma once
 
 #include <optional>
 #include <string_view>
 
-#include "receiver/protocol/nmea_version.hpp"
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
 namespace skyloop {
+
+/// Which fields the sentences have and how satellites are numbered (RECEIVER.md 5.2).
+enum class NmeaVersion { v2_1, v2_3, v4_0, v4_10, v4_11 };
 
 /// A group of satellites that GSA and GSV report together.
 struct NmeaSystem {

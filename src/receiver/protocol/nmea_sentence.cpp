@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/core/fixed_text.hpp"
+#include "base/core/number_text.hpp"
 
 namespace skyloop {
 namespace {

@@ -3,8 +3,8 @@
 #include <array>
 #include <string>
 
-#include "base/core/bit_field.hpp"
-#include "receiver/protocol/message_listing.hpp"
+#include "base/core/bytes.hpp"
+#include "receiver/protocol/field_lister.hpp"
 
 namespace skyloop {
 namespace {

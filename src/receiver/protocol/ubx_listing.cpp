@@ -3,22 +3,17 @@
 #include <array>
 #include <string>
 
-#include "receiver/protocol/message_listing.hpp"
+#include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_device.hpp"
 #include "receiver/protocol/ubx_cfg_navigation.hpp"
-#include "receiver/protocol/ubx_cfg_output.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
 #include "receiver/protocol/ubx_hardware.hpp"
 #include "receiver/protocol/ubx_inertial.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 #include "receiver/protocol/ubx_names.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
-#include "receiver/protocol/ubx_ports.hpp"
 #include "receiver/protocol/ubx_raw.hpp"
-#include "receiver/protocol/ubx_relative.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
-#include "receiver/protocol/ubx_security.hpp"
 #include "receiver/protocol/ubx_services.hpp"
 #include "receiver/protocol/ubx_time.hpp"
 

@@ -8,9 +8,8 @@
 #include "base/time/utc_time.hpp"
 #include "receiver/pvt/navigation_parameters.hpp"
 #include "world/gnss/atmosphere.hpp"
-#include "world/gnss/navigation_source.hpp"
-#include "world/gnss/ntcm_g.hpp"
-#include "world/gnss/troposphere.hpp"
+#include "world/gnss/ephemeris.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 
 namespace skyloop {
 

@@ -5,9 +5,8 @@
 #include <initializer_list>
 #include <numbers>
 
-#include "detail/local_motion.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/gnss/thin_shell.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 
 namespace skyloop {
 namespace {

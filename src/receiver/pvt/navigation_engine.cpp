@@ -5,15 +5,10 @@
 #include <utility>
 
 #include "base/geo/local_frame.hpp"
-#include "detail/differential.hpp"
-#include "detail/local_motion.hpp"
-#include "detail/range_equation.hpp"
-#include "detail/satellite_choice.hpp"
-#include "receiver/pvt/code_smoother.hpp"
 #include "receiver/pvt/expected_error.hpp"
 #include "receiver/pvt/integrity.hpp"
+#include "receiver/pvt/observation_equations.hpp"
 #include "receiver/pvt/position_filter.hpp"
-#include "receiver/pvt/received_records.hpp"
 #include "receiver/pvt/satellite_report.hpp"
 #include "receiver/pvt/single_point.hpp"
 #include "world/gnss/constants.hpp"

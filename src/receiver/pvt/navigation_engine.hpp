@@ -12,7 +12,7 @@
 #include "world/flow/fix.hpp"
 #include "world/flow/observations.hpp"
 #include "world/flow/receiver_settings.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
 

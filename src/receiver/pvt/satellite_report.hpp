@@ -1,16 +1,64 @@
 /// The satellites as the receiver lists them.
+/// The records that a receiver has received.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <set>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "receiver/pvt/received_records.hpp"
+#include "receiver/pvt/navigation_parameters.hpp"
 #include "receiver/pvt/single_point.hpp"
 #include "world/flow/fix.hpp"
 #include "world/flow/observations.hpp"
+#include "world/flow/receiver_settings.hpp"
+#include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
+
+/// A receiver's memory of what the satellites send. As a source of orbits it gives what it knows.
+///
+/// State: of each satellite the record that was received, and since when its data has been heard without a break.
+class ReceivedRecords : public NavigationSource {
+public:
+    /// @param sent what the satellites send; outlives this
+    ReceivedRecords(const NavigationSource& sent, const NavigationParameters& parameters);
+
+    /// Forgets what a start of this kind forgets. Before the first one it knew everything.
+    void restart(StartKind kind, GpsTime time);
+    /// Listens to the satellites of one epoch. A satellite's record is known once its data has been heard for
+    /// ephemeris_collection; from then on a new one is taken up as soon as it is sent, while the satellite is heard.
+    /// @param time true time as well as the receiver can tell
+    void listen(const Observations& observations, GpsTime time);
+    /// The receiver knows what time it is: it has not started cold, or has received a record since.
+    [[nodiscard]] bool time_known() const { return time_known_; }
+    [[nodiscard]] bool almanac_known(GpsTime time) const;
+    /// The received record; nothing once it is older than its kind lasts.
+    [[nodiscard]] const Ephemeris* record(SatelliteId satellite, GpsTime time) const;
+
+    [[nodiscard]] std::vector<SatelliteId> satellites() const override;
+    [[nodiscard]] std::optional<Ephemeris> ephemeris(SatelliteId satellite, GpsTime time) const override;
+    [[nodiscard]] const BroadcastIonosphere& ionosphere() const override { return sent_.ionosphere(); }
+    [[nodiscard]] std::optional<TimeSpan> span() const override { return sent_.span(); }
+    [[nodiscard]] std::string description() const override { return sent_.description(); }
+
+private:
+    struct Memory {
+        std::optional<Ephemeris> record;
+        std::optional<GpsTime> heard_since;
+        bool is_current = false;  // the record is the one that is sent
+    };
+    const NavigationSource& sent_;
+    Seconds collection_;
+    DataParameters data_;
+    std::map<SatelliteId, Memory> satellites_;
+    bool time_known_ = true;
+    bool all_known_ = true;  // before the first start, and until the first epoch if that is a hot one
+    bool almanac_kept_ = true;
+    std::optional<GpsTime> almanac_since_;  // of a cold start: heard from then on
+};
 
 /// What the list is made of.
 struct ReportInput {

@@ -7,7 +7,7 @@
 
 #include "base/geo/local_frame.hpp"
 #include "detail/normal_equations.hpp"
-#include "world/gnss/earth_turn.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "base/geo/frames.hpp"
-#include "world/gnss/carried_records.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
+#include "world/gnss/orbit.hpp"
 #include "world/gnss/precise_orbits.hpp"
 #include "world/gnss/signal.hpp"
 

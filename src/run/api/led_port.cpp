@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/core/line_format.hpp"
+#include "base/core/bytes.hpp"
 
 namespace skyloop {
 namespace {

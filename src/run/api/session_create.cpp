@@ -8,7 +8,7 @@
 #include "detail/data_place.hpp"
 #include "detail/session.hpp"
 #include "run/client/open_client.hpp"
-#include "run/emulator/run_summary.hpp"
+#include "run/emulator/assembly.hpp"
 #include "run/emulator/wires.hpp"
 #include "run/scenario/scenario_file.hpp"
 

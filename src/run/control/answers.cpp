@@ -1,20 +1,26 @@
+// The page, as files inside the program.
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <span>
 
-#include "base/core/letter_case.hpp"
-#include "detail/header_text.hpp"
-#include "detail/json_text.hpp"
-#include "detail/page_files.hpp"
+#include "base/core/embedded_file.hpp"
+#include "base/core/words.hpp"
+#include "detail/control_json.hpp"
 #include "run/control/command_json.hpp"
 #include "run/control/control_request.hpp"
 #include "run/control/status_json.hpp"
 #include "run/emulator/director.hpp"
-#include "run/fault/checked_command.hpp"
+#include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 
 namespace skyloop {
+
+/// Those of src/run/control/page, by name.
+std::span<const EmbeddedFile> page_files();
+
 namespace {
 
 constexpr std::string_view live_fault_prefix = "/api/faults/";

@@ -1,6 +1,8 @@
 /// What a control request is answered, without a socket.
+/// How HTTP compares what stands in headers.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -14,6 +16,12 @@
 #include "run/fault/command.hpp"
 
 namespace skyloop {
+
+/// Without blanks and tabs at both ends.
+inline std::string_view without_blanks(std::string_view text) {
+    const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
+    return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
+}
 
 /// Bounds of what a client may send.
 inline constexpr std::size_t control_body_limit = 64 * 1024, control_header_limit = 8 * 1024;

@@ -9,11 +9,11 @@
 #include <random>
 #include <thread>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 #include "detail/server_core.hpp"
 #include "run/control/status_json.hpp"
 #include "run/emulator/director.hpp"
-#include "run/emulator/thread_priority.hpp"
+#include "run/emulator/real_time.hpp"
 
 namespace skyloop {
 namespace {

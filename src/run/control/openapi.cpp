@@ -1,10 +1,10 @@
 // The description of the interface for programs, from the tables that also check it.
 #include <utility>
 
-#include "detail/parameter_json.hpp"
+#include "detail/control_json.hpp"
 #include "run/control/command_json.hpp"
 #include "run/control/control_request.hpp"
-#include "run/fault/checked_command.hpp"
+#include "run/fault/command.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,22 +1,18 @@
 #include "run/emulator/assembly.hpp"
 
-#include "detail/fault_warnings.hpp"
-#include "detail/input_files.hpp"
-#include "detail/limit_warnings.hpp"
-#include "detail/load_ionosphere_maps.hpp"
 #include "detail/modern_assembly.hpp"
 #include "detail/receiver_assembly.hpp"
 #include "detail/recorded_files.hpp"
-#include "detail/weather_warnings.hpp"
+#include "detail/run_warnings.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "base/core/digest.hpp"
-#include "base/core/text_file.hpp"
-#include "receiver/error_model/make_error_model.hpp"
+#include "base/core/bytes.hpp"
+#include "base/core/files.hpp"
+#include "receiver/error_model/error_model.hpp"
 #include "receiver/error_model/model_effects.hpp"
 #include "run/emulator/load_scene.hpp"
 #include "run/emulator/load_track.hpp"

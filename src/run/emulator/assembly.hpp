@@ -1,4 +1,6 @@
 /// The only place that builds everything.
+/// All mistakes of a scenario, not the first alone.
+/// run.json: what ran and what it counted.
 #pragma once
 
 #include <filesystem>
@@ -6,15 +8,16 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/core/result.hpp"
 #include "base/geo/geoid.hpp"
 #include "firmware/board_profile.hpp"
 #include "run/emulator/data_folders.hpp"
-#include "run/emulator/deadline_grants.hpp"
 #include "run/emulator/emulator.hpp"
 #include "run/emulator/load_scene.hpp"
+#include "run/emulator/real_time.hpp"
 #include "run/output/run_output.hpp"
 #include "run/scenario/scenario.hpp"
 #include "world/propagation/atmosphere_losses.hpp"
@@ -140,5 +143,19 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
 
 /// The EGM96 geoid, or nothing and a warning.
 std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::string>& warnings);
+
+/// `first`, and a line for each other mistake that shows when navigation data, track, timeline, live sources, scene and
+/// receivers are each tried by themselves. A file that a key names and that is not there is a mistake at that key.
+/// @param scenario as far as it could be read
+/// @param now the wall clock, GPST
+Error with_other_mistakes(const Error& first, const Scenario& scenario, const DataFolders& data, GpsTime now);
+
+/// What a summary is of: a run that begins, so that one that is killed can still be repeated, or one that has ended, as
+/// it was to or, stopped from outside, before.
+enum class SummaryOf { beginning, end, cut_end };
+
+/// The text of run.json: version, seed, digest, start, counts, bytes and the lateness histogram.
+std::string run_summary(const Scenario& scenario, const Assembly& assembly, std::string_view version,
+                        SummaryOf what = SummaryOf::end);
 
 }  // namespace skyloop

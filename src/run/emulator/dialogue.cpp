@@ -8,7 +8,7 @@
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 #include "receiver/protocol/ubx_names.hpp"
-#include "run/fault/command_names.hpp"
+#include "run/fault/known_names.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/septentrio/command_line_reader.hpp"
-#include "receiver/protocol/patient_splitter.hpp"
+#include "firmware/septentrio/settings.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 #include "run/fault/run_observer.hpp"
 #include "wire/transport/transport.hpp"
 

@@ -7,12 +7,26 @@
 #include <utility>
 
 #include "base/geo/local_frame.hpp"
-#include "firmware/start_kind.hpp"
-#include "run/emulator/pacer.hpp"
+#include "firmware/firmware_faults.hpp"
+#include "run/emulator/command_queue.hpp"
 #include "run/emulator/station.hpp"
+#include "run/emulator/timing.hpp"
 #include "run/fault/timeline_keys.hpp"
 
 namespace skyloop {
+
+bool CommandQueue::push(Command command) {
+    const std::scoped_lock lock(mutex_);
+    if (waiting_.size() >= most) return false;
+    waiting_.push_back(std::move(command));
+    return true;
+}
+
+std::vector<Command> CommandQueue::take() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(waiting_, {});
+}
+
 namespace {
 
 // At one instant: commands that start what starts them would go on for ever.

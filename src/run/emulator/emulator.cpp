@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 #include "detail/recorded_files.hpp"
 
 namespace skyloop {

@@ -9,8 +9,8 @@
 
 #include "run/emulator/director.hpp"
 #include "run/emulator/live_feeds.hpp"
-#include "run/emulator/pacer.hpp"
 #include "run/emulator/station.hpp"
+#include "run/emulator/timing.hpp"
 
 namespace skyloop {
 

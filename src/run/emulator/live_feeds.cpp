@@ -7,8 +7,8 @@
 #include <chrono>
 #include <utility>
 
-#include "base/core/steady_clock.hpp"
-#include "run/fault/checked_command.hpp"
+#include "base/core/threads.hpp"
+#include "run/fault/command.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,15 +5,14 @@
 #include <map>
 #include <set>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 
 #include "base/time/utc_time.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/navigation_files.hpp"
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 #include "world/gnss/foreign_records.hpp"
 #include "world/gnss/navigation_data.hpp"
-#include "world/gnss/nominal_constellation.hpp"
 #include "world/rinex/almanac_file.hpp"
 #include "world/rinex/navigation_file.hpp"
 

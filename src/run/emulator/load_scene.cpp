@@ -7,11 +7,11 @@
 #include <array>
 #include <string_view>
 
-#include "base/core/digest.hpp"
+#include "base/core/bytes.hpp"
 #include "base/geo/local_frame.hpp"
 #include "run/emulator/assembly.hpp"
 #include "world/scene/generated_city.hpp"
-#include "world/scene/stand_on_terrain.hpp"
+#include "world/scene/urban_scene.hpp"
 
 namespace skyloop {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/time/utc_time.hpp"
 #include "motion/tracks/read_track.hpp"
 #include "motion/trajectory/recorded_path.hpp"
@@ -314,6 +314,19 @@ Result<LoadedTrack> load_track(Scenario& scenario, const Geoid* geoid, GpsTime s
         if (!own) return fail(own.error().code, whose + own.error().message);
         add_own(*loaded, *own, whose);
     }
+    return loaded;
+}
+
+Result<LoadedTrack> load_generated(GeneratedSettings& path, std::uint64_t run_seed) {
+    auto plan = plan_generated(path.path, run_seed);
+    if (!plan) return fail(ErrorCode::input, "trajectory: " + plan.error());
+    path.shape = plan->shape;
+    LoadedTrack loaded;
+    const double seconds = plan->shape->duration();
+    loaded.description = plan->summary.empty() ? std::string("generated path") : plan->summary;
+    loaded.description += std::isfinite(seconds) ? fmt::format(", {:.1f} s", seconds) : ", without an end";
+    for (const std::string& note : plan->notes)
+        loaded.warnings.push_back("trajectory: " + note);
     return loaded;
 }
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "base/core/gauss_markov.hpp"
-#include "world/flow/relative_position.hpp"
+#include "base/core/random.hpp"
+#include "world/flow/epoch.hpp"
 #include "world/flow/trace.hpp"
 
 namespace skyloop {

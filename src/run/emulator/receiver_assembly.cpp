@@ -5,13 +5,13 @@
 #include <chrono>
 #include <optional>
 
-#include "base/core/digest.hpp"
-#include "base/core/replace_file.hpp"
+#include "base/core/bytes.hpp"
+#include "base/core/files.hpp"
 #include "detail/recorded_files.hpp"
-#include "detail/rinex_recording.hpp"
+#include "detail/recording_formats.hpp"
 #include "firmware/config/config_keys.hpp"
 #include "run/client/open_client.hpp"
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 #include "wire/actuator/actuator_uri.hpp"
 #include "wire/transport/open_transport.hpp"
 

@@ -7,9 +7,8 @@
 #include <iterator>
 #include <system_error>
 
-#include "base/core/replace_file.hpp"
-#include "detail/rinex_recording.hpp"
-#include "detail/trace_rows.hpp"
+#include "base/core/files.hpp"
+#include "detail/recording_formats.hpp"
 
 namespace skyloop {
 

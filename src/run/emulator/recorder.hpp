@@ -9,11 +9,10 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "run/emulator/claimed_folder.hpp"
-#include "run/emulator/output_file.hpp"
-#include "run/emulator/pacer.hpp"
+#include "run/emulator/run_files.hpp"
+#include "run/emulator/timing.hpp"
 #include "world/flow/trace.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "run/emulator/pacer.hpp"
+#include "run/emulator/timing.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "run/emulator/lateness.hpp"
 #include "run/emulator/link.hpp"
-#include "run/emulator/recorded_output.hpp"
+#include "run/emulator/read_recording.hpp"
+#include "run/emulator/timing.hpp"
 
 namespace skyloop {
 

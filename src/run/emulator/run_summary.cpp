@@ -1,4 +1,4 @@
-#include "run/emulator/run_summary.hpp"
+#include "run/emulator/assembly.hpp"
 
 #include <fmt/format.h>
 

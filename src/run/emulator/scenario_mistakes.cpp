@@ -1,4 +1,4 @@
-#include "run/emulator/scenario_mistakes.hpp"
+#include "run/emulator/assembly.hpp"
 
 #include <algorithm>
 #include <string>
@@ -10,7 +10,7 @@
 #include "run/emulator/load_scene.hpp"
 #include "run/emulator/load_track.hpp"
 #include "run/scenario/timeline_check.hpp"
-#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/navigation_data.hpp"
 
 namespace skyloop {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "world/propagation/free_space.hpp"
+#include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop {
 namespace {

@@ -14,8 +14,8 @@
 #include "run/fault/active_faults.hpp"
 #include "world/flow/receiver_settings.hpp"
 #include "world/flow/trace.hpp"
-#include "world/gnss/navigation_source.hpp"
-#include "world/propagation/effect.hpp"
+#include "world/gnss/ephemeris.hpp"
+#include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/ray_traced_scene.hpp"
 #include "world/sky/observe_sky.hpp"
 

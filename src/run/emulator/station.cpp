@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "run/emulator/moved_path.hpp"
+#include "run/emulator/antenna_path.hpp"
 #include "run/emulator/wires.hpp"
 
 namespace skyloop {

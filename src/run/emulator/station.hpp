@@ -10,15 +10,13 @@
 
 #include "firmware/receiver.hpp"
 #include "run/emulator/dialogue.hpp"
-#include "run/emulator/epoch_grid.hpp"
-#include "run/emulator/faulty_wire.hpp"
-#include "run/emulator/lateness.hpp"
 #include "run/emulator/link.hpp"
 #include "run/emulator/moving_base.hpp"
+#include "run/emulator/read_recording.hpp"
 #include "run/emulator/recorder.hpp"
-#include "run/emulator/repeated_input.hpp"
+#include "run/emulator/run_files.hpp"
 #include "run/emulator/simulation.hpp"
-#include "run/emulator/state_file.hpp"
+#include "run/emulator/timing.hpp"
 #include "run/fault/active_faults.hpp"
 #include "wire/actuator/power_switch.hpp"
 

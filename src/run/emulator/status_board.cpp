@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "run/emulator/pacer.hpp"
+#include "run/emulator/timing.hpp"
 
 namespace skyloop {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "run/emulator/station.hpp"
 #include "run/emulator/status_snapshot.hpp"
-#include "run/fault/silence_watch.hpp"
+#include "run/fault/run_observer.hpp"
 
 namespace skyloop {
 

@@ -13,7 +13,7 @@
 #include "base/geo/geodetic.hpp"
 #include "base/time/gps_time.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
-#include "run/fault/epoch_views.hpp"
+#include "run/fault/run_observer.hpp"
 #include "world/flow/fix.hpp"
 #include "world/gnss/signal.hpp"
 

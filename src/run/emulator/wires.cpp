@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
 #include "run/client/open_client.hpp"
 #include "wire/actuator/actuator_uri.hpp"
 #include "wire/transport/open_transport.hpp"

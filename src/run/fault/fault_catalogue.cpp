@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "detail/catalogue_parts.hpp"
+#include "detail/fault_catalogue.hpp"
 #include "run/fault/fault_kind.hpp"
 
 namespace skyloop {
@@ -33,6 +33,45 @@ std::vector<ParameterMistake> ramp_mistakes(const FaultKind& kind, const Paramet
             mistakes.push_back({key, fmt::format("is {:g}, and {} is there or is not; expected no ramp",
                                                  *values.optional_number(key), kind.name)});
     return mistakes;
+}
+
+void silence(Arrival& arrival) {
+    arrival.line_of_sight = false;
+    arrival.paths = 0;
+    arrival.reflections = 0;
+    arrival.excess_path = Metres(0);
+    arrival.excess_rate = MetresPerSecond(0);
+    arrival.echoes.clear();
+    arrival.cn0.reset();
+    arrival.cut_off = true;
+}
+
+Edit<Epoch> detected_after(const Parameters& parameters) {
+    const auto after = parameters.optional_number("detected_after_s");
+    if (!after) return {};
+    return [after = *after](Epoch& epoch, const FaultMoment& moment) {
+        if (moment.since_start.value() >= after)
+            epoch.front_end.spoofing = std::max(epoch.front_end.spoofing, SpoofingIndication::indicated);
+    };
+}
+
+Result<std::optional<ToldPlace>> ToldPlace::read(const Parameters& parameters, std::string_view name) {
+    const std::vector<double> numbers = parameters.numbers(name);
+    if (numbers.empty()) return std::nullopt;
+    if (numbers.size() < 2)
+        return fail(ErrorCode::usage, fmt::format("{} has one number; expected latitude and longitude", name));
+    const auto place = place_from_degrees(numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0);
+    if (!place) return fail(ErrorCode::usage, fmt::format("{}: {}", name, place.error()));
+    ToldPlace told;
+    told.place_ = *place;
+    told.has_height_ = numbers.size() > 2;
+    return told;
+}
+
+Position<Ecef> ToldPlace::seen_from(const TruthState& truth) const {
+    Geodetic place = place_;
+    if (!has_height_) place.height = truth.geodetic.height;
+    return to_ecef(place);
 }
 
 }  // namespace skyloop

@@ -1,22 +1,59 @@
 /// Faults by name: what they are told, what they do, and what they stand for.
+/// Cycles that a receiver's counts of the carrier have lost or won.
+/// Which signals the parameters of a fault choose.
+/// The catalogue of faults for people.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/core/random.hpp"
 #include "base/core/result.hpp"
 #include "firmware/firmware_faults.hpp"
-#include "run/fault/lost_cycles.hpp"
 #include "run/fault/parameters.hpp"
-#include "run/fault/wire_conditions.hpp"
+#include "run/fault/wire_damage.hpp"
+#include "world/flow/observations.hpp"
 #include "world/flow/trace.hpp"
+#include "world/gnss/satellite.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop {
+
+/// What faults have done to the counts of one receiver. A count that has slipped stays wrong when its fault is over,
+/// until the receiver counts the signal anew.
+///
+/// State: the counts that are off.
+class LostCycles {
+public:
+    /// Before the faults of an epoch: forgets signals that are counted anew, or not at all.
+    void follow(const Observations& observations);
+    /// A count breaks by so many cycles. @param noticed the receiver knows it at once
+    void slip(const Observation& observation, GpsTime now, double cycles, bool noticed);
+    /// In this epoch the receiver does not know that the count is off.
+    void hide(const Observation& observation);
+    /// After the faults of an epoch: puts what was lost into phases and lock times. What the receiver knows of, or no
+    /// fault hides any longer, is part of the ambiguities that it finds anew.
+    void apply(Observations& observations, GpsTime now);
+    [[nodiscard]] bool empty() const { return counts_.empty(); }
+
+private:
+    struct Count {
+        double cycles = 0;
+        double resolved = 0;               // of them, in the ambiguity that the receiver goes by
+        std::optional<GpsTime> noticed{};  // the last slip that it saw
+        bool hidden = false;
+    };
+    using Key = std::pair<SatelliteId, Signal>;
+
+    std::map<Key, Count> counts_;
+};
 
 /// Where a fault works.
 enum class FaultLayer {
@@ -98,5 +135,16 @@ const FaultKind* find_fault_kind(std::string_view name);
 /// What is wrong with the ramps of a fault of this kind: what is there or not, cannot have any.
 /// @param values `ramp_in_s` and `ramp_out_s` among them
 std::vector<ParameterMistake> ramp_mistakes(const FaultKind& kind, const Parameters& values);
+
+/// Whether a fault with these checked parameters is for a signal, wherever in the sky its satellite stands. One that
+/// chooses no satellites and signals is for all.
+bool is_for(const Parameters& parameters, SatelliteId satellite, Signal signal);
+
+/// A line a kind, by layer.
+std::string fault_list_text();
+/// One kind with its parameters.
+std::string fault_text(const FaultKind& kind);
+/// Every kind, command and key of the timeline, as a page of Markdown.
+std::string fault_catalogue_markdown();
 
 }  // namespace skyloop

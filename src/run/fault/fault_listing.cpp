@@ -1,4 +1,4 @@
-#include "run/fault/fault_listing.hpp"
+#include "run/fault/fault_kind.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

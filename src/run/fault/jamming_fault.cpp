@@ -3,11 +3,10 @@
 #include <memory>
 #include <numbers>
 
-#include "detail/arrival_edits.hpp"
-#include "detail/catalogue_parts.hpp"
+#include "detail/fault_catalogue.hpp"
 #include "detail/signal_selector.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/gnss/interference.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop {
 namespace {

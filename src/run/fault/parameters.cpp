@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/core/number_in.hpp"
-#include "base/core/spelling.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/words.hpp"
 
 namespace skyloop {
 namespace {

@@ -8,9 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/core/gauss_markov.hpp"
-#include "detail/catalogue_parts.hpp"
-#include "detail/edit_shortcuts.hpp"
+#include "base/core/random.hpp"
+#include "detail/fault_catalogue.hpp"
 
 namespace skyloop {
 namespace {

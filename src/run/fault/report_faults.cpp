@@ -7,8 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "detail/catalogue_parts.hpp"
-#include "detail/edit_shortcuts.hpp"
+#include "detail/fault_catalogue.hpp"
 
 namespace skyloop {
 namespace {

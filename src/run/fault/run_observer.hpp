@@ -1,17 +1,24 @@
 /// Who watches a run: verdicts, recordings, displays.
+/// Which receivers of a run have fallen silent.
+/// What observers make of an epoch that they are shown.
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/core/bytes.hpp"
+#include "base/core/units.hpp"
 #include "firmware/navigation_state.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "run/fault/command.hpp"
 #include "run/fault/timeline.hpp"
 #include "world/flow/trace.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop {
 
@@ -71,5 +78,51 @@ public:
     virtual void on_command(const CommandSeen&) {}
     virtual void on_belief(const BeliefSeen&) {}
 };
+
+/// A receiver that has reported no epoch for so long tells its users nothing: what it said before is no fix of now.
+inline constexpr Seconds silent_after{2};
+
+/// Takes the epochs of a run. State: when each receiver reported last; before its first report the run's start.
+class SilenceWatch {
+public:
+    explicit SilenceWatch(GpsTime start) : start_(start) {}
+
+    /// @param now of the epoch; of one receiver it never goes back
+    /// @return whether the receiver reports nothing of it, nor has for silent_after
+    bool is_silent(const EpochSeen& seen, GpsTime now) {
+        GpsTime& told_at = told_at_.try_emplace(seen.station, start_).first->second;
+        if (seen.leaves) told_at = now;
+        return difference(now, told_at) >= silent_after;
+    }
+
+private:
+    GpsTime start_;
+    std::map<std::size_t, GpsTime> told_at_;  // by station
+};
+
+/// One satellite above the antenna, and what the receiver makes of it.
+struct SatelliteSeen {
+    SatelliteId id;
+    Angle azimuth, elevation;
+    bool line_of_sight = true;
+    bool reflected = false;  ///< what is tracked has been reflected
+    bool blocked = false;    ///< nothing arrives
+    bool used = false;       ///< in the solution
+    bool healthy = true;     ///< by its broadcast
+    int paths = 1;           ///< rays that arrive
+    /// C/N0 of each signal that the receiver tracks; of a sensor model the first signal's alone.
+    std::vector<std::pair<Signal, DbHz>> signals;
+};
+
+/// East, north, up.
+struct EnuError {
+    Metres east, north, up;
+};
+
+/// All satellites above the horizon, in the order of the trace.
+std::vector<SatelliteSeen> satellites_seen(const EpochSeen& seen);
+
+/// Fix − truth. Only for a fix that has a position.
+EnuError enu_error(const TruthState& truth, const Fix& fix);
 
 }  // namespace skyloop

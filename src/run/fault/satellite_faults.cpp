@@ -3,13 +3,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "detail/arrival_edits.hpp"
-#include "detail/catalogue_parts.hpp"
 #include "detail/false_place.hpp"
+#include "detail/fault_catalogue.hpp"
 #include "detail/signal_selector.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/gnss/earth_turn.hpp"
-#include "world/gnss/thin_shell.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 
 namespace skyloop {
 namespace {

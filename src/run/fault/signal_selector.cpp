@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "run/fault/fault_kind.hpp"
 #include "run/fault/known_names.hpp"
-#include "run/fault/selected_signals.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "base/time/utc_time.hpp"
-#include "detail/catalogue_parts.hpp"
-#include "detail/edit_shortcuts.hpp"
+#include "detail/fault_catalogue.hpp"
 
 namespace skyloop {
 namespace {

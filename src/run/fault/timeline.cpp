@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/core/random.hpp"
-#include "receiver/protocol/mavlink_modes.hpp"
+#include "receiver/protocol/mavlink.hpp"
 #include "run/fault/known_names.hpp"
 
 namespace skyloop {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
-#include "receiver/protocol/mavlink_modes.hpp"
+#include "receiver/protocol/mavlink.hpp"
 #include "run/fault/known_names.hpp"
 
 namespace skyloop {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
-#include "base/core/line_format.hpp"
-#include "detail/catalogue_parts.hpp"
-#include "firmware/start_kind.hpp"
+#include "base/core/bytes.hpp"
+#include "detail/fault_catalogue.hpp"
+#include "firmware/firmware_faults.hpp"
 
 namespace skyloop {
 namespace {

@@ -3,7 +3,7 @@
 #include <tuple>
 #include <utility>
 
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 #include "detail/feed_link.hpp"
 
 namespace skyloop {

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/core/letter_case.hpp"
-#include "base/core/number_in.hpp"
-#include "base/core/spelling.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/words.hpp"
 #include "run/feed/truth_feed.hpp"
 
 namespace skyloop {

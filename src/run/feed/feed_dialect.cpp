@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "detail/dialects.hpp"
+#include "detail/dialect_parts.hpp"
 
 namespace skyloop {
 namespace {

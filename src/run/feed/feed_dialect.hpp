@@ -14,8 +14,8 @@
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
 #include "base/geo/geoid.hpp"
-#include "base/geo/local_map.hpp"
-#include "motion/trajectory/truth_sample.hpp"
+#include "base/geo/simulator_frames.hpp"
+#include "motion/trajectory/trajectory.hpp"
 #include "run/fault/command.hpp"
 
 namespace skyloop {

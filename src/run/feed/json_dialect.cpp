@@ -1,5 +1,5 @@
 // Our own feed, lines of JSON: skyloop-truth/1 (FEEDS.md 3.3, docs/feeds.md).
-#include "detail/dialects.hpp"
+#include "detail/dialect_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "detail/json_statement.hpp"
-#include "detail/source_pose.hpp"
 #include "motion/trajectory/live_path.hpp"
 
 namespace skyloop {

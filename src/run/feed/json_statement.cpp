@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 #include "base/geo/local_frame.hpp"
-#include "run/fault/checked_command.hpp"
+#include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 
 namespace skyloop {

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "base/core/table_line.hpp"
-#include "detail/dialects.hpp"
-#include "detail/line_source.hpp"
+#include "base/core/table_text.hpp"
+#include "detail/dialect_parts.hpp"
 #include "detail/motion_filter.hpp"
 
 namespace skyloop {

@@ -12,7 +12,7 @@
 #include <tuple>
 #include <utility>
 
-#include "detail/feed_socket.hpp"
+#include "detail/feed_link.hpp"
 #include "run/feed/mavlink_component.hpp"
 
 namespace skyloop {

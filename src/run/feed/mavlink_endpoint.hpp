@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "run/feed/failure_injection.hpp"
+#include "run/feed/mavlink_component.hpp"
 
 namespace skyloop {
 

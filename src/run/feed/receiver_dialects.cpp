@@ -6,11 +6,8 @@
 #include <utility>
 
 #include "base/time/utc_time.hpp"
-#include "detail/dialects.hpp"
-#include "detail/epoch_gate.hpp"
-#include "detail/line_source.hpp"
+#include "detail/dialect_parts.hpp"
 #include "detail/motion_filter.hpp"
-#include "detail/source_pose.hpp"
 #include "receiver/observed/nmea_epochs.hpp"
 #include "receiver/observed/ubx_epochs.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 #include "detail/feed_link.hpp"
 #include "wire/transport/serial.hpp"
 

@@ -8,9 +8,8 @@
 #include <cstring>
 #include <limits>
 
-#include "detail/dialects.hpp"
+#include "detail/dialect_parts.hpp"
 #include "detail/motion_filter.hpp"
-#include "detail/source_pose.hpp"
 #include "receiver/protocol/field_list.hpp"
 
 namespace skyloop {

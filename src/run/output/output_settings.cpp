@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "base/core/number_in.hpp"
-#include "base/core/spelling.hpp"
+#include "base/core/number_text.hpp"
+#include "base/core/words.hpp"
 
 namespace skyloop {
 namespace {

@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "base/core/signals_held_back.hpp"
-#include "detail/epoch_writer.hpp"
+#include "base/core/threads.hpp"
+#include "run/output/epoch_messages.hpp"
 #include "wire/transport/file.hpp"
 #include "wire/transport/tcp_client.hpp"
 

@@ -1,13 +1,12 @@
-#include "detail/board_keys.hpp"
+#include "detail/scenario_keys.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "detail/scenario_keys.hpp"
 #include "firmware/config/config_handler.hpp"
-#include "firmware/septentrio/settings_table.hpp"
+#include "firmware/septentrio/settings.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,13 +4,12 @@
 #include <bit>
 #include <limits>
 
-#include "base/core/spelling.hpp"
-#include "detail/board_keys.hpp"
+#include "base/core/words.hpp"
 #include "detail/scenario_keys.hpp"
-#include "firmware/board_messages.hpp"
+#include "firmware/board_profile.hpp"
 #include "firmware/config/config_handler.hpp"
+#include "firmware/config/config_keys.hpp"
 #include "firmware/config/config_store.hpp"
-#include "firmware/config/message_names.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "detail/scenario_keys.hpp"
 #include "run/fault/known_names.hpp"
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "detail/key_recorder.hpp"
 #include "detail/scenario_keys.hpp"
+#include "detail/table_reader.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <map>
 
-#include "base/core/letter_case.hpp"
+#include "base/core/words.hpp"
 #include "run/scenario/key_catalogue.hpp"
 
 namespace skyloop {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "detail/scenario_keys.hpp"
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,7 +1,9 @@
 /// One run, as plain data: what a scenario file and the command line say.
+/// The buildings around a run, as a scenario sets them.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -12,34 +14,54 @@
 #include <variant>
 #include <vector>
 
-#include "base/geo/level_frame.hpp"
-#include "base/geo/local_map.hpp"
+#include "base/geo/simulator_frames.hpp"
 #include "firmware/board_profile.hpp"
 #include "motion/trajectory/generated_path.hpp"
 #include "motion/trajectory/geometric_paths.hpp"
 #include "motion/trajectory/live_path.hpp"
-#include "motion/trajectory/playback.hpp"
 #include "motion/trajectory/recorded_path.hpp"
 #include "motion/trajectory/route.hpp"
 #include "motion/trajectory/source_clock.hpp"
 #include "motion/trajectory/track.hpp"
-#include "receiver/error_model/model_kind.hpp"
-#include "receiver/error_model/parameters.hpp"
+#include "receiver/error_model/model_parameters.hpp"
 #include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 #include "run/fault/timeline.hpp"
 #include "run/output/output_settings.hpp"
 #include "run/scenario/campaign_settings.hpp"
 #include "run/scenario/modern_settings.hpp"
-#include "run/scenario/scene_settings.hpp"
 #include "run/verdict/expectation.hpp"
+#include "world/city/city_file.hpp"
 #include "world/flow/receiver_settings.hpp"
-#include "world/gnss/navigation_source.hpp"
-#include "world/propagation/atmosphere_parameters.hpp"
-#include "world/propagation/link_budget_parameters.hpp"
-#include "world/propagation/whole_path_parameters.hpp"
+#include "world/gnss/ephemeris.hpp"
+#include "world/propagation/propagation_parameters.hpp"
 
 namespace skyloop {
+
+/// In place of a file: demo_city().
+inline constexpr const char* demo_scene_name = "demo";
+
+/// [scene]: which files stand around the antenna, how they are read, and what their surfaces do.
+struct SceneEntry {
+    std::vector<std::filesystem::path> buildings;  ///< files, or demo_scene_name; joined into one frame
+    std::filesystem::path terrain;                 ///< height grid; empty: none
+    /// Without an origin the frame lies antenna_above_scene below scene_start() (emulator/load_scene.hpp).
+    CityFileSettings reading;
+    std::string origin_told_at = "scene.origin: ";  ///< "FILE:LINE:COLUMN: KEY: ", for messages
+
+    std::optional<int> reflections;       ///< most of one path, 1 … 16; nothing: 16, in the modern model 3
+    bool roofs_reflect = false;           ///< besides walls
+    std::optional<bool> ground_reflects;  ///< nothing: in the modern model alone
+    bool diffraction = true;              ///< modern: at edges
+    bool foliage = true;                  ///< modern: the scene's own trees
+    int rays = 0;                         ///< of a search, of the whole hemisphere; 0: by the epoch rate
+    std::optional<int> threads;           ///< of each receiver, that search beside the loop; nothing: 1, of led runs 0
+    std::size_t memory_limit_mb = 4096;   ///< of the scene; 0: none
+    bool cache = true;                    ///< of cities that take time to read
+
+    /// False: nothing stands around, the default.
+    [[nodiscard]] bool given() const { return !buildings.empty() || !terrain.empty(); }
+};
 
 /// "FILE:LINE:COLUMN: KEY: " by keys, for what shows only when a run is put together; what an option has given is not
 /// among them.

@@ -1,4 +1,4 @@
-#include "run/scenario/scenario_changes.hpp"
+#include "run/scenario/scenario_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "base/core/number_in.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
+#include "base/core/number_text.hpp"
 #include "detail/scenario_keys.hpp"
 #include "detail/toml_values.hpp"
 

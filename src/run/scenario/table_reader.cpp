@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
 #include "detail/toml_values.hpp"
 
 namespace skyloop {

@@ -11,7 +11,7 @@
 #include "base/time/utc_time.hpp"
 #include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
-#include "run/fault/planned_events.hpp"
+#include "run/fault/timeline.hpp"
 
 namespace skyloop {
 namespace {

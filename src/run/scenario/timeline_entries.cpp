@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
 #include "detail/scenario_keys.hpp"
 #include "detail/table_reader.hpp"
 #include "run/fault/fault_kind.hpp"

@@ -1,6 +1,6 @@
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation.hpp"
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 #include "detail/sentence_words.hpp"
 
 namespace skyloop {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "detail/sentence_words.hpp"
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "detail/expectation_tracker.hpp"
 #include "detail/probe_run.hpp"
-#include "run/fault/silence_watch.hpp"
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/fault/run_observer.hpp"
+#include "run/verdict/expectation.hpp"
 
 namespace skyloop {
 

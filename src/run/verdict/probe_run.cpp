@@ -1,14 +1,195 @@
-#include "detail/probe_run.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
+#include <array>
 #include <chrono>
+#include <cmath>
 
+#include "base/core/number_text.hpp"
 #include "base/core/process.hpp"
-#include "run/verdict/expectation_sentence.hpp"
+#include "base/core/words.hpp"
+#include "detail/probe_run.hpp"
+#include "detail/sentence_words.hpp"
+#include "run/verdict/expectation.hpp"
 
 namespace skyloop {
+namespace {
+
+using JsonValue = nlohmann::json;
+using ConditionValue = std::variant<double, bool, std::string>;
+
+struct Operator {
+    std::string_view sign;
+    Relation comparison;
+};
+// The longer ones first: "<=" begins as "<".
+constexpr std::array<Operator, 6> operators{{{"==", Relation::equal},
+                                             {"!=", Relation::not_equal},
+                                             {"<=", Relation::at_most},
+                                             {">=", Relation::at_least},
+                                             {"<", Relation::below},
+                                             {">", Relation::above}}};
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t'))
+        text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t'))
+        text.remove_suffix(1);
+    return text;
+}
+
+tl::unexpected<SentenceMistake> condition_mistake(std::size_t column, std::string sentence) {
+    return tl::make_unexpected(SentenceMistake{column, std::move(sentence)});
+}
+
+bool is_path_character(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+// "tpv.mode": nothing when a part is empty or has other characters.
+std::optional<std::vector<std::string>> parse_path(std::string_view text) {
+    std::vector<std::string> path(1);
+    for (const char c : text) {
+        if (c == '.')
+            path.emplace_back();
+        else if (is_path_character(c))
+            path.back() += c;
+        else
+            return std::nullopt;
+    }
+    for (const std::string& part : path)
+        if (part.empty()) return std::nullopt;
+    return path;
+}
+
+std::optional<ConditionValue> parse_condition_value(std::string_view text) {
+    if (text == "true") return true;
+    if (text == "false") return false;
+    const bool quoted =
+        text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
+    if (quoted) return std::string(text.substr(1, text.size() - 2));
+    if (const auto number = number_in<double>(text)) return *number;
+    if (const auto word = parse_path(text); word && word->size() == 1 && !(text[0] >= '0' && text[0] <= '9'))
+        return std::string(text);
+    return std::nullopt;
+}
+
+// The value at the path from `first` on, or null.
+const JsonValue* value_at(const JsonValue& object, const std::vector<std::string>& path, std::size_t first) {
+    const JsonValue* value = &object;
+    for (std::size_t i = first; i < path.size(); ++i) {
+        if (value->is_array()) {
+            const auto index = number_in<std::size_t>(path[i]);
+            if (!index || *index >= value->size()) return nullptr;
+            value = &(*value)[*index];
+            continue;
+        }
+        const auto found = value->is_object() ? value->find(path[i]) : value->end();
+        if (!value->is_object() || found == value->end()) return nullptr;
+        value = &*found;
+    }
+    return value;
+}
+
+template <class Value>
+bool compares(const Value& found, Relation comparison, const Value& wanted) {
+    switch (comparison) {
+        case Relation::below:
+            return found < wanted;
+        case Relation::above:
+            return found > wanted;
+        case Relation::at_least:
+            return found >= wanted;
+        case Relation::at_most:
+            return found <= wanted;
+        case Relation::equal:
+            return found == wanted;
+        case Relation::not_equal:
+            return found != wanted;
+    }
+    return false;
+}
+
+// Values of different kinds are unequal, and nothing else.
+bool value_fulfils(const JsonCondition& condition, const JsonValue& value) {
+    if (const auto* number = std::get_if<double>(&condition.value); number != nullptr && value.is_number())
+        return compares(value.get<double>(), condition.comparison, *number);
+    if (const auto* text = std::get_if<std::string>(&condition.value); text != nullptr && value.is_string())
+        return compares(value.get_ref<const std::string&>(), condition.comparison, *text);
+    if (const auto* flag = std::get_if<bool>(&condition.value); flag != nullptr && value.is_boolean())
+        return compares(value.get<bool>(), condition.comparison, *flag);
+    return condition.comparison == Relation::not_equal;
+}
+
+bool names_class(const JsonValue& object, const std::string& part) {
+    const auto found = object.find("class");
+    return found != object.end() && found->is_string() &&
+           lower_case(found->get_ref<const std::string&>()) == lower_case(part);
+}
+
+std::string value_text(const ConditionValue& value) {
+    if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+    if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+    const std::string& text = std::get<std::string>(value);
+    const char quote = text.find('\'') == std::string::npos ? '\'' : '"';
+    return quote + text + quote;
+}
+
+}  // namespace
+
+tl::expected<JsonCondition, SentenceMistake> parse_json_condition(std::string_view text) {
+    if (text.size() > 1000) return condition_mistake(1, "is longer than 1000 characters");
+    const std::size_t sign = text.find_first_of("=!<>");
+    const std::string_view path_words = trimmed(text.substr(0, sign));
+    const auto path = parse_path(path_words);
+    if (!path)
+        return condition_mistake(
+            1, fmt::format("'{}' is no path; expected names with points between: tpv.mode", path_words));
+    if (sign == std::string_view::npos)
+        return condition_mistake(text.size() + 1, "the condition ends here; expected one of == != < <= > >=");
+    JsonCondition condition{*path, Relation::equal, 0.0};
+    std::size_t length = 0;
+    for (const Operator& known : operators)
+        if (length == 0 && text.substr(sign).starts_with(known.sign)) {
+            condition.comparison = known.comparison;
+            length = known.sign.size();
+        }
+    if (length == 0)
+        return condition_mistake(
+            sign + 1, fmt::format("'{}' is no comparison; expected one of == != < <= > >=", text.substr(sign, 1)));
+    const std::string_view value_words = trimmed(text.substr(sign + length));
+    const auto value = parse_condition_value(value_words);
+    if (!value)
+        return condition_mistake(sign + length + 1, fmt::format("'{}' is no value; expected a number, true, false or a "
+                                                                "text in quotes",
+                                                                value_words));
+    condition.value = *value;
+    const bool ordered = condition.comparison != Relation::equal && condition.comparison != Relation::not_equal;
+    if (ordered && !std::holds_alternative<double>(*value))
+        return condition_mistake(sign + 1, "only numbers are larger or smaller; expected == or !=");
+    return condition;
+}
+
+std::string condition_text(const JsonCondition& condition) {
+    std::string text = condition.path.front();
+    for (std::size_t i = 1; i < condition.path.size(); ++i)
+        text += "." + condition.path[i];
+    for (const Operator& known : operators)
+        if (known.comparison == condition.comparison) text += fmt::format(" {} ", known.sign);
+    return text + value_text(condition.value);
+}
+
+bool fulfils(const JsonCondition& condition, std::string_view line) {
+    if (line.empty() || line.size() > (std::size_t{1} << 16)) return false;
+    const JsonValue object = JsonValue::parse(line, nullptr, false);
+    if (!object.is_object()) return false;
+    if (const JsonValue* value = value_at(object, condition.path, 0)) return value_fulfils(condition, *value);
+    if (condition.path.size() < 2 || !names_class(object, condition.path.front())) return false;
+    const JsonValue* value = value_at(object, condition.path, 1);
+    return value != nullptr && value_fulfils(condition, *value);
+}
+
 namespace {
 
 using HostClock = std::chrono::steady_clock;  // probes look at the world outside, which has no other

@@ -8,8 +8,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "base/core/letter_case.hpp"
-#include "base/core/terminal_text.hpp"
+#include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
 
 namespace skyloop {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
 #include "detail/sentence_words.hpp"
 #include "detail/subject_view.hpp"
 #include "run/fault/command.hpp"

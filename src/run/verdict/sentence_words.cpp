@@ -7,8 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "base/core/letter_case.hpp"
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
 
 namespace skyloop {
 namespace {

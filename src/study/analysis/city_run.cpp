@@ -8,8 +8,8 @@
 #include <map>
 #include <span>
 
-#include "base/core/text_file.hpp"
-#include "detail/table_cells.hpp"
+#include "base/core/files.hpp"
+#include "detail/run_tables.hpp"
 
 namespace skyloop {
 namespace {

@@ -9,10 +9,8 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "study/analysis/distribution.hpp"
 #include "study/analysis/fix_series.hpp"
 #include "study/analysis/statistics.hpp"
-#include "study/analysis/time_correlation.hpp"
 
 namespace skyloop {
 

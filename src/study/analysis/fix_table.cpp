@@ -1,4 +1,4 @@
-#include "detail/fix_table.hpp"
+#include "detail/run_tables.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,10 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
-#include "detail/fix_columns.hpp"
-#include "detail/table_cells.hpp"
 #include "world/flow/fix.hpp"
 
 namespace skyloop {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "world/gnss/earth_turn.hpp"
-#include "world/scene/direction_towards.hpp"
+#include "world/gnss/orbit.hpp"
+#include "world/scene/urban_scene.hpp"
 
 namespace skyloop {
 namespace {

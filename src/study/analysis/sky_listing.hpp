@@ -1,4 +1,5 @@
 /// The satellites above a place as a table: for a terminal, as JSON and as CSV.
+/// Satellite tracks as a table.
 #pragma once
 
 #include <optional>
@@ -12,6 +13,7 @@
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
 #include "world/gnss/dop.hpp"
+#include "world/sky/satellite_tracks.hpp"
 
 namespace skyloop {
 
@@ -59,5 +61,9 @@ std::string sky_json(const SkyListing& listing);
 /// empty without a city; reflections and excess_m are those of the first path of a satellite that is not in line of
 /// sight).
 std::string sky_csv(std::span<const SkyListing> listings);
+
+/// All points as CSV, ascending by time and then by satellite: time_utc,satellite,x_m,y_m,z_m (metres, to a
+/// millimetre).
+std::string tracks_csv(std::span<const SatelliteTrack> tracks);
 
 }  // namespace skyloop

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "detail/colour_ramp.hpp"
 #include "detail/plan_view.hpp"
 #include "detail/plot_style.hpp"
 

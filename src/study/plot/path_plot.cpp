@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/geo/local_frame.hpp"
-#include "detail/colour_ramp.hpp"
 #include "detail/plan_view.hpp"
 #include "detail/plot_style.hpp"
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/time/utc_time.hpp"
-#include "detail/label_placement.hpp"
+#include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
 namespace skyloop {

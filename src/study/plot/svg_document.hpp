@@ -1,4 +1,5 @@
 /// A picture as SVG 1.1 text: shapes in drawing order, always well formed, the same bytes for the same calls.
+/// The pictures' colours on a dark page.
 #pragma once
 
 #include <string>
@@ -79,5 +80,9 @@ std::string svg_number(double value);
 /// Text for XML content and attributes: markup escaped, control characters dropped, what is not UTF-8 replaced by
 /// U+FFFD.
 std::string svg_escape(std::string_view text);
+
+/// Rules of a style sheet that give the shapes of pictures inside a page other colours, one to a line. Pictures carry
+/// the colours of a light page themselves, so that each stands alone as well.
+std::string dark_picture_rules();
 
 }  // namespace skyloop

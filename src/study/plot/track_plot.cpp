@@ -9,9 +9,9 @@
 #include <numbers>
 #include <set>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 #include "base/time/utc_time.hpp"
-#include "detail/label_placement.hpp"
+#include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
 namespace skyloop {

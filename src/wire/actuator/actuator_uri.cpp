@@ -6,7 +6,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 #include "detail/switch_parts.hpp"
 #include "wire/transport/serial.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "base/core/result.hpp"
 #include "wire/actuator/actuator.hpp"
-#include "wire/usb/usb_address.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 

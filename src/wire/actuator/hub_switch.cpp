@@ -1,15 +1,55 @@
+// A port of a hub that the kernel leaves alone.
+
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
-#include "detail/hub_port_claim.hpp"
 #include "detail/switch_parts.hpp"
 #include "wire/usb/hub_port_power.hpp"
 
 namespace skyloop {
+
+/// While it lives the kernel's hub driver neither switches the port's power on again, as it otherwise does where what
+/// was plugged in has gone, nor gives a driver to what appears there (USBDEVFS_CLAIM_PORT). The kernel takes it back
+/// from a process that ends. libusb has no call for it, so that it has a file of its own.
+class HubPortClaim {
+public:
+    /// @param node of the hub, "/dev/bus/usb/001/004". Null: the kernel does not allow it, or somebody else has it.
+    static std::unique_ptr<HubPortClaim> take(const std::string& node, int port);
+    ~HubPortClaim();
+    HubPortClaim(const HubPortClaim&) = delete;
+    HubPortClaim& operator=(const HubPortClaim&) = delete;
+
+private:
+    HubPortClaim(int file, unsigned port) : file_(file), port_(port) {}
+    int file_;
+    unsigned port_;
+};
+
+std::unique_ptr<HubPortClaim> HubPortClaim::take(const std::string& node, int port) {
+    const int file = ::open(node.c_str(), O_RDWR | O_CLOEXEC);
+    if (file < 0) return nullptr;
+    auto number = static_cast<unsigned>(port);
+    if (::ioctl(file, USBDEVFS_CLAIM_PORT, &number) == 0)
+        return std::unique_ptr<HubPortClaim>(new HubPortClaim(file, number));
+    ::close(file);
+    return nullptr;
+}
+
+HubPortClaim::~HubPortClaim() {
+    ::ioctl(file_, USBDEVFS_RELEASE_PORT, &port_);
+    ::close(file_);
+}
+
 namespace {
 
 using HubClock = std::chrono::steady_clock;  // the kernel's hub driver lives by the host's time

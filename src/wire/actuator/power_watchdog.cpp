@@ -8,7 +8,7 @@
 #include <cstring>
 #include <thread>
 
-#include "base/core/say.hpp"
+#include "base/core/words.hpp"
 #include "wire/actuator/actuator_uri.hpp"
 
 namespace skyloop {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <fstream>
 
-#include "base/core/number_in.hpp"
-#include "base/core/text_file.hpp"
-#include "detail/device_nodes.hpp"
+#include "base/core/files.hpp"
+#include "base/core/number_text.hpp"
+#include "wire/devices/device_list.hpp"
 
 namespace skyloop {
 namespace {

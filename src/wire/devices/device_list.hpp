@@ -1,4 +1,5 @@
 /// What is plugged into this machine: each device with its profile, its nodes, and what stands in the way of using it.
+/// The files under /dev that belong to a device, by the paths of sysfs.
 #pragma once
 
 #include <chrono>
@@ -113,5 +114,12 @@ private:
     std::vector<Settling> settling_;  // have come, and wait for their nodes
     std::vector<DeviceEntry> there_;  // have been told of
 };
+
+/// Where sysfs tells of the device at this port path.
+std::filesystem::path sysfs_of_usb(const SystemFolders& folders, const std::string& port_path);
+/// Of the device at the port of `usb`, serial lines first.
+std::vector<DeviceNode> nodes_of_usb(const UsbDeviceInfo& usb, const SystemFolders& folders);
+/// A serial line by its name, "ttyAMA0", without interface and driver.
+DeviceNode serial_node(const std::string& name, const SystemFolders& folders);
 
 }  // namespace skyloop

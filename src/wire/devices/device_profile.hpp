@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "wire/usb/usb_address.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 

@@ -9,9 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "base/core/signals_held_back.hpp"
-#include "base/core/steady_clock.hpp"
-#include "wire/usb/bridge_buffers.hpp"
+#include "base/core/threads.hpp"
+#include "wire/usb/serial_bridge.hpp"
 
 namespace skyloop {
 namespace {

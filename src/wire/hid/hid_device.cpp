@@ -1,6 +1,9 @@
+// The functions of one backend of hidapi, found in its library when first asked for.
 #include "wire/hid/hid_device.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <hidapi/hidapi.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,13 +11,83 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "base/core/text_file.hpp"
-#include "detail/hid_api.hpp"
+#include "base/core/files.hpp"
+#include "base/core/result.hpp"
 
 namespace skyloop {
+
+struct HidApi {
+    HidBackend backend;
+    decltype(&hid_init) initialize;
+    decltype(&hid_exit) finish;
+    decltype(&hid_enumerate) enumerate;
+    decltype(&hid_free_enumeration) free_enumeration;
+    decltype(&hid_open_path) open_path;
+    decltype(&hid_close) close;
+    decltype(&hid_write) write;
+    decltype(&hid_read_timeout) read_timeout;
+    decltype(&hid_send_feature_report) send_feature_report;
+    decltype(&hid_get_feature_report) get_feature_report;
+    decltype(&hid_error) error;
+};
+
+/// Stays loaded until the program ends. Fails with `outside`: the library is not there, and which package has it.
+Result<const HidApi*> hid_api(HidBackend backend);
+
+namespace {
+
+struct Library {
+    const char* file;
+    const char* package;
+};
+
+Library library_of(HidBackend backend) {
+    if (backend == HidBackend::hidraw) return {"libhidapi-hidraw.so.0", "libhidapi-hidraw0"};
+    return {"libhidapi-libusb.so.0", "libhidapi-libusb0"};
+}
+
+template <class Function>
+bool find(void* library, const char* name, Function& function) {
+    function = reinterpret_cast<Function>(dlsym(library, name));
+    return function != nullptr;
+}
+
+Result<HidApi> load(HidBackend backend) {
+    const Library library = library_of(backend);
+    // Local and bound to itself: the other backend has the same names.
+    void* loaded = dlopen(library.file, RTLD_NOW | RTLD_LOCAL);
+    if (loaded == nullptr)
+        return fail(ErrorCode::outside, fmt::format("cannot use HID devices: {} is not on this machine (package {})",
+                                                    library.file, library.package));
+    HidApi api{};
+    api.backend = backend;
+    const bool whole =
+        find(loaded, "hid_init", api.initialize) && find(loaded, "hid_exit", api.finish) &&
+        find(loaded, "hid_enumerate", api.enumerate) && find(loaded, "hid_free_enumeration", api.free_enumeration) &&
+        find(loaded, "hid_open_path", api.open_path) && find(loaded, "hid_close", api.close) &&
+        find(loaded, "hid_write", api.write) && find(loaded, "hid_read_timeout", api.read_timeout) &&
+        find(loaded, "hid_send_feature_report", api.send_feature_report) &&
+        find(loaded, "hid_get_feature_report", api.get_feature_report) && find(loaded, "hid_error", api.error);
+    if (!whole || api.initialize() != 0)
+        return fail(ErrorCode::outside, fmt::format("cannot use HID devices: {} {}", library.file,
+                                                    whole ? "does not start" : "is no hidapi"));
+    return api;
+}
+
+}  // namespace
+
+Result<const HidApi*> hid_api(HidBackend backend) {
+    static const Result<HidApi> hidraw = load(HidBackend::hidraw);
+    static const Result<HidApi> libusb = load(HidBackend::libusb);
+    const Result<HidApi>& api = backend == HidBackend::hidraw ? hidraw : libusb;
+    if (!api) return fail(api.error());
+    return &*api;
+}
+
 namespace {
 
 constexpr std::size_t longest_report = 4096;  // bytes; those of the devices here have 64

@@ -9,7 +9,7 @@
 
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
-#include "wire/usb/usb_address.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
-#include "wire/usb/usb_address.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/core/signals_held_back.hpp"
+#include "base/core/threads.hpp"
 
 namespace skyloop {
 

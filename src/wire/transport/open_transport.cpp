@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "base/core/spelling.hpp"
-#include "detail/line_options.hpp"
+#include "base/core/words.hpp"
+#include "detail/line_settings.hpp"
 #include "wire/hid/cp2110.hpp"
 #include "wire/transport/file.hpp"
 #include "wire/transport/pty.hpp"

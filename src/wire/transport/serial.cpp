@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "detail/line_options.hpp"
+#include "detail/line_settings.hpp"
 #include "detail/serial_line.hpp"
 
 namespace skyloop {

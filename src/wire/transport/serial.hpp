@@ -10,10 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "base/core/line_format.hpp"
+#include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
 #include "wire/transport/device_search.hpp"
-#include "wire/transport/serial_search.hpp"
 #include "wire/transport/serial_system.hpp"
 #include "wire/transport/transport.hpp"
 

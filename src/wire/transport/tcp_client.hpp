@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 #include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/tcp.hpp"
 #include "wire/transport/transport.hpp"

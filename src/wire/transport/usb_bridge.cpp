@@ -6,9 +6,9 @@
 #include <iterator>
 #include <utility>
 
-#include "base/core/steady_clock.hpp"
-#include "detail/line_options.hpp"
-#include "wire/usb/usb_context.hpp"
+#include "base/core/threads.hpp"
+#include "detail/line_settings.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 namespace {

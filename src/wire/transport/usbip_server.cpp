@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/core/steady_clock.hpp"
-#include "detail/tcp_listener.hpp"
+#include "base/core/threads.hpp"
 #include "detail/tcp_socket.hpp"
 
 namespace skyloop {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
-#include "base/core/send_buffer.hpp"
 #include "wire/transport/usbip_messages.hpp"
 
 namespace skyloop {

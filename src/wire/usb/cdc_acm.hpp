@@ -8,7 +8,7 @@
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
 #include "wire/usb/serial_bridge.hpp"
-#include "wire/usb/usb_context.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 

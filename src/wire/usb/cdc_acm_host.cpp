@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/core/signals_held_back.hpp"
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 
 namespace skyloop {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 
 namespace skyloop {
 namespace {

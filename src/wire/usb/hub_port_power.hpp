@@ -6,7 +6,7 @@
 
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
-#include "wire/usb/usb_context.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 

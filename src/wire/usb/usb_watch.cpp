@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "wire/usb/usb_context.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 namespace {

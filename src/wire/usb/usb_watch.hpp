@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "wire/usb/usb_address.hpp"
+#include "wire/usb/usb_device.hpp"
 
 namespace skyloop {
 

@@ -7,9 +7,8 @@
 #include <limits>
 #include <set>
 
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
 #include "detail/city_text.hpp"
-#include "detail/convex_hull.hpp"
 #include "world/city/footprint.hpp"
 
 namespace skyloop {

@@ -1,5 +1,5 @@
 #include "detail/city_text.hpp"
-#include "base/core/letter_case.hpp"
+#include "base/core/words.hpp"
 
 #include <fmt/format.h>
 

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/core/digest.hpp"
-#include "base/core/letter_case.hpp"
+#include "base/core/bytes.hpp"
+#include "base/core/words.hpp"
 #include "detail/city_text.hpp"
 
 namespace skyloop {

@@ -1,13 +1,22 @@
 /// Houses from their outlines.
+/// The hull around places of a plane.
 #pragma once
 
 #include <Eigen/Core>
+
 #include <vector>
 
 #include "base/core/result.hpp"
 #include "world/scene/city_model.hpp"
 
 namespace skyloop {
+
+/// The convex hull, anticlockwise (Andrew 1979); fewer than three corners where the points have no area.
+/// Points without a place are left out.
+std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
+
+/// The area of a convex ring, in the square of its unit.
+double hull_area(const std::vector<Eigen::Vector2d>& ring);
 
 /// An outline with courtyards; rings in any sense, closed or not; east, north, m.
 struct Footprint {

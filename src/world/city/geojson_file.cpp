@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/core/letter_case.hpp"
-#include "base/core/middle.hpp"
+#include "base/core/std_additions.hpp"
+#include "base/core/words.hpp"
 #include "detail/city_text.hpp"
 #include "detail/json_text.hpp"
 #include "detail/outlines.hpp"

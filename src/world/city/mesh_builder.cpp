@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/core/letter_case.hpp"
+#include "base/core/words.hpp"
 #include "detail/city_text.hpp"
 #include "detail/place_on_earth.hpp"
 #include "world/city/footprint.hpp"

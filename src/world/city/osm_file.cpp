@@ -10,9 +10,8 @@
 #include <unordered_map>
 
 #include "detail/city_text.hpp"
-#include "detail/osm_text.hpp"
+#include "detail/osm_checks.hpp"
 #include "detail/outlines.hpp"
-#include "detail/pbf_blobs.hpp"
 
 namespace skyloop {
 

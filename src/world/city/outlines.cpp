@@ -8,7 +8,7 @@
 #include "detail/city_objects.hpp"
 #include "detail/city_text.hpp"
 #include "detail/ear_clipper.hpp"
-#include "world/scene/ring_pieces.hpp"
+#include "world/scene/city_model.hpp"
 
 namespace skyloop {
 

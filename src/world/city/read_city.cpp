@@ -6,8 +6,8 @@
 #include <system_error>
 
 #include "base/core/archive.hpp"
-#include "base/core/letter_case.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
+#include "base/core/words.hpp"
 #include "detail/city_text.hpp"
 #include "detail/companion_files.hpp"
 #include "world/city/city_file.hpp"

@@ -1,11 +1,14 @@
 /// What the receiver measures.
+/// Navigation messages as they are received.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
+#include "world/gnss/ephemeris.hpp"
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
@@ -44,6 +47,16 @@ struct Observations {
     GpsTime receive_time;        ///< as the receiver's own clock shows it
     bool clock_was_set = false;  ///< the receiver moved its clock by whole milliseconds since the epoch before
     std::vector<Observation> signals;
+};
+
+/// One subframe, string or page of one signal, in words as a u-blox receiver hands them out (RXM-SFRBX).
+struct Subframe {
+    SatelliteId satellite;
+    Signal signal = Signal::l1;
+    GpsTime end;                ///< when its last bit was sent
+    int frequency_channel = 0;  ///< of GLONASS
+    std::vector<std::uint32_t> words;
+    std::optional<Ephemeris> record{};  ///< that is whole with this part: the others were received before it
 };
 
 }  // namespace skyloop

@@ -1,11 +1,16 @@
 /// Delays of the ionosphere and the troposphere by the closed models that broadcasts and receivers share.
+/// The delay of the neutral air by Saastamoinen's formulas, and the weather that they need.
+///
+/// The climate of the troposphere all over the globe: GPT's pressure and temperature, GMF's and VMF1's mapping
+/// functions.
 #pragma once
 
 #include "base/core/units.hpp"
 #include "base/geo/geodetic.hpp"
 #include "base/time/gps_time.hpp"
+#include "base/time/utc_time.hpp"
 #include "world/gnss/dop.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
 
@@ -60,5 +65,83 @@ struct MappingSite {
 double niell_hydrostatic_mapping(const MappingSite& site, Angle elevation);
 /// Niell's wet mapping function.
 double niell_wet_mapping(Angle latitude, Angle elevation);
+
+/// The air at an antenna.
+struct SurfaceWeather {
+    double pressure_hpa = 1013.25;  ///< total
+    Kelvin temperature{288.16};
+    double vapour_pressure_hpa = 0;
+};
+
+/// The standard atmosphere that receivers assume: 1013.25 hPa and 15 °C at sea level, 6.5 K less per kilometre, vapour
+/// from the relative humidity; constant below sea level (Saastamoinen 1972; MODELS.md 7.3; RTKLIB's constants).
+/// @param relative_humidity 0 … 1
+SurfaceWeather standard_weather(MslHeight height, double relative_humidity);
+
+/// Zenith hydrostatic delay 0.0022768 P/(1 − 0.00266 cos 2φ − 0.00028 h_km) (Saastamoinen 1972; Davis et al. 1985).
+Metres zenith_hydrostatic_delay(double pressure_hpa, Angle latitude, MslHeight height);
+/// Zenith wet delay 0.002277 (1255/T + 0.05) e (Saastamoinen 1972).
+Metres zenith_wet_delay(const SurfaceWeather& weather);
+
+/// Zenith delays of both parts.
+struct ZenithDelay {
+    Metres hydrostatic;
+    Metres wet;
+    [[nodiscard]] Metres total() const { return hydrostatic + wet; }
+};
+ZenithDelay saastamoinen_zenith_delay(const SurfaceWeather& weather, Angle latitude, MslHeight height);
+
+/// Slant delay in the standard atmosphere, mapped by 1/sin e as the simplest receivers do.
+/// @param elevation above 0°
+Metres saastamoinen_delay(Angle latitude, MslHeight height, Angle elevation, double relative_humidity);
+
+/// Days, with fraction, since 28 January 1980: the phase of the annual wave in GPT, GMF and VMF1 (IERS Conventions
+/// 2010, section 9.2). It runs on over the years.
+struct AnnualPhase {
+    double days = 0;
+    /// @param mjd modified Julian date, UTC, with fraction
+    static AnnualPhase of_modified_julian_date(double mjd) { return {mjd - 44266}; }
+    static AnnualPhase of(const UtcTime& utc);
+    /// cos(2π days/365.25): 1 in the northern winter.
+    [[nodiscard]] double cosine() const;
+};
+
+/// What GPT says of a place.
+struct GptWeather {
+    double pressure_hpa = 0;
+    double temperature_celsius = 0;
+    Metres undulation;  ///< of the geoid, as the model has it
+};
+
+/// Global pressure and temperature (Boehm, Heinkelmann and Schuh 2007; IERS Conventions 2010, GPT.F).
+GptWeather gpt_weather(const Geodetic& place, AnnualPhase phase);
+
+/// A hydrostatic and a wet mapping, slant over zenith delay.
+struct TroposphereMapping {
+    double hydrostatic = 1;
+    double wet = 1;
+};
+
+/// The two numbers that weather models give for VMF1.
+struct Vmf1Coefficients {
+    double a_hydrostatic = 0;
+    double a_wet = 0;
+};
+
+/// a_h and a_w of the global mapping function, at sea level: what of it depends on place and season alone.
+Vmf1Coefficients gmf_coefficients(const Geodetic& place, AnnualPhase phase);
+
+/// Global mapping function (Boehm, Niell, Tregoning and Schuh 2006; IERS Conventions 2010, GMF.F), Niell's height
+/// correction included.
+TroposphereMapping gmf_mapping(const Geodetic& place, AnnualPhase phase, Angle elevation);
+
+/// Hydrostatic coefficients of VMF1 with a given a (Boehm, Werl and Schuh 2006; MODELS.md 7.3).
+MappingCoefficients vmf1_hydrostatic(double a_hydrostatic, Angle latitude, AnnualPhase phase);
+/// Wet coefficients of VMF1 with a given a.
+MappingCoefficients vmf1_wet(double a_wet);
+
+/// Vienna mapping function 1 with coefficients given at the height of the place (VMF1.F). For coefficients on a grid at
+/// sea level, add niell_height_correction() to the hydrostatic part (VMF1_HT.F).
+TroposphereMapping vmf1_mapping(const Vmf1Coefficients& a, Angle latitude, AnnualPhase phase, Angle elevation);
 
 }  // namespace skyloop

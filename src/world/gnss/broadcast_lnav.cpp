@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "detail/broadcast_fields.hpp"
-#include "world/gnss/carried_almanac.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop {
 

@@ -8,7 +8,6 @@
 
 #include "base/time/utc_time.hpp"
 #include "world/gnss/ephemeris.hpp"
-#include "world/gnss/navigation_source.hpp"
 
 namespace skyloop {
 

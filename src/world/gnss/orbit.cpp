@@ -1,6 +1,7 @@
 #include "world/gnss/orbit.hpp"
 
 #include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -209,6 +210,42 @@ Ephemeris carried_to(const Ephemeris& ephemeris, GpsTime time) {
     }
     carried.clock_bias = state.clock_bias;
     return carried;
+}
+
+KeplerEphemeris carried_almanac(const KeplerEphemeris& record, GpsTime time) {
+    const double passed = difference(time, record.toe).value();
+    // The node's longitude counts from the start of the week.
+    const auto weeks = static_cast<double>(week_and_tow(record.toe).week - week_and_tow(time).week);
+    const double turned = earth_rotation_rate * static_cast<double>(seconds_per_week) * weeks;
+    const double motion = std::sqrt(gravitational_constant_gps) / std::pow(record.sqrt_a, 3) + record.delta_n;
+    const auto circle = [](double angle) { return std::remainder(angle, 2 * std::numbers::pi); };
+    KeplerEphemeris carried = record;
+    carried.toe = carried.toc = time;
+    carried.i0 = record.i0 + record.idot * passed;
+    carried.omega0 = circle(record.omega0 + record.omega_dot * passed + turned);
+    carried.m0 = circle(record.m0 + motion * passed);
+    carried.af0 = record.af0 + record.af1 * difference(time, record.toc).value();
+    return carried;
+}
+
+namespace {
+
+bool same_record(const GlonassEphemeris& a, const GlonassEphemeris& b) {
+    return a.toe == b.toe && a.position_m == b.position_m && a.velocity_mps == b.velocity_mps &&
+           a.acceleration_mps2 == b.acceleration_mps2 && a.clock_bias == b.clock_bias && a.clock_drift == b.clock_drift;
+}
+
+}  // namespace
+
+const GlonassEphemeris& CarriedRecords::at(const GlonassEphemeris& record, GpsTime time) {
+    const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(time - record.toe);
+    const GpsTime base = record.toe + minutes;
+    Carried& kept = carried_[record.satellite];
+    if (!same_record(kept.origin, record) || kept.record.toe != base) {
+        kept.origin = record;
+        kept.record = std::get<GlonassEphemeris>(carried_to(record, base));
+    }
+    return kept.record;
 }
 
 }  // namespace skyloop

@@ -1,10 +1,27 @@
 /// Where a satellite is, how it moves, and what its clock shows.
+/// The Earth's rotation while a signal travels.
+/// Orbits of almanacs at another reference time.
+/// GLONASS records brought near the present, so that a look at a satellite integrates seconds and not minutes.
 #pragma once
 
+#include <Eigen/Core>
+
+#include <map>
+
 #include "base/geo/frames.hpp"
+#include "world/gnss/constants.hpp"
 #include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
+
+/// Rz(ω_e τ): a vector in the ECEF frame of τ seconds ago as today's frame has it (MODELS.md 3.4). The series are exact
+/// to double precision for |τ| < 1 s.
+inline Eigen::Vector3d turned_by(const Eigen::Vector3d& v, double travel_time_s) {
+    const double angle = earth_rotation_rate * travel_time_s;
+    const double s = angle * (1 - angle * angle / 6);
+    const double c = 1 - angle * angle / 2;
+    return {v.x() * c + v.y() * s, -v.x() * s + v.y() * c, v.z()};
+}
 
 /// State of a satellite at one instant, in the ECEF frame of that same instant.
 struct SatelliteState {
@@ -33,5 +50,26 @@ SatelliteState satellite_state(const Ephemeris& ephemeris, GpsTime time, Seconds
 /// The same orbit and clock with `time` as its reference time where that makes near instants cheap: GLONASS records are
 /// integrated once. Others come back as they are.
 Ephemeris carried_to(const Ephemeris& ephemeris, GpsTime time);
+
+/// The same orbit and clock, told from another time of reference on: `toe` and `toc` become `time`, and what changes
+/// with them is carried along (IS-GPS-200, 20.3.3.4.3.1). Of GPS and QZSS, without harmonic and quadratic terms.
+KeplerEphemeris carried_almanac(const KeplerEphemeris& record, GpsTime time);
+
+/// Gives for each GLONASS record the same orbit at the last whole minute from its toe towards an instant. Whole minutes
+/// are the steps of the integration itself, so that carrying changes no bit of it.
+///
+/// State: the last result for each satellite. It hangs on record and minute alone: no answer depends on what was asked
+/// before.
+class CarriedRecords {
+public:
+    const GlonassEphemeris& at(const GlonassEphemeris& record, GpsTime time);
+
+private:
+    struct Carried {
+        GlonassEphemeris origin;
+        GlonassEphemeris record;
+    };
+    std::map<SatelliteId, Carried> carried_;
+};
 
 }  // namespace skyloop

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/core/fixed_text.hpp"
+#include "base/core/number_text.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,12 +1,15 @@
 /// Signals, their carriers and the group delays that broadcasts give for them.
+/// Which blocks of satellites send under the PRNs of GPS, and with that which civil signals.
+/// What a jammer leaves of a signal.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <string_view>
 
-#include "base/core/inplace_vector.hpp"
+#include "base/core/std_additions.hpp"
 #include "base/core/units.hpp"
+#include "base/time/gps_time.hpp"
 #include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
@@ -81,5 +84,34 @@ std::optional<Seconds> sent_group_delay(const Ephemeris& record, Signal signal);
 /// the broadcast's. (Over 36 satellites of 2023-01-01 BeiDou's clocks of CODE differ from the broadcast ones by 3.06
 /// TGD1; the pair B1I and B3I gives 2.94.)
 std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal);
+
+/// Whether the satellite that has a PRN at a time sends L1, L2C or L5. Of the blocks, IIR-M is the first with L2C, IIF
+/// the first with L5 (IS-GPS-200, IS-GPS-705). A satellite counts from its launch on; one that will come under a PRN of
+/// today's Block IIR sends what that sends.
+/// @param prn 1 … 32; above it: all signals
+bool gps_sends(int prn, Signal signal, GpsTime when);
+
+/// A jammer's spectrum against that of the signal: how well a correlator rejects it (MODELS.md 7.7, Q).
+enum class JammerKind {
+    narrow_band,  ///< Q 1
+    matched,      ///< Q 1.5: the spectrum of the signal
+    wide_band,    ///< Q 2.2
+};
+/// Its Q.
+double rejection_quality(JammerKind kind);
+
+/// Power of a signal in an isotropic antenna that J/S refers to (MODELS.md 7.7).
+inline constexpr DecibelWatts nominal_signal_power{-157};
+
+/// How well a correlator rejects an interference (Kaplan and Hegarty, table of Q).
+struct InterferenceRejection {
+    double quality = 1.5;  ///< Q, rejection_quality()
+    Hertz chip_rate{1.023e6};
+};
+
+/// Effective C/N0 under an interference J/S stronger than the signal:
+/// −10 log10(10^(−C/N0/10) + 10^(J/S/10)/(Q R_c)) (Kaplan and Hegarty, Understanding GPS, chapter on interference;
+/// MODELS.md 7.7).
+DbHz cn0_under_interference(DbHz cn0, Decibels jammer_to_signal, const InterferenceRejection& rejection = {});
 
 }  // namespace skyloop

@@ -7,9 +7,9 @@
 
 #include "base/geo/geoid.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/propagation/atmosphere_parameters.hpp"
-#include "world/propagation/effect.hpp"
 #include "world/propagation/modern_parameters.hpp"
+#include "world/propagation/propagation_effect.hpp"
+#include "world/propagation/propagation_parameters.hpp"
 #include "world/propagation/specific_attenuation.hpp"
 
 namespace skyloop {

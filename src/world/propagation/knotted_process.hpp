@@ -1,15 +1,37 @@
 /// Errors that wander smoothly: random processes drawn at fixed instants, with a smooth curve between them.
+/// What an effect keeps for each satellite that it has met.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
-#include "base/core/gauss_markov.hpp"
 #include "base/core/random.hpp"
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
+#include "world/gnss/satellite.hpp"
 
 namespace skyloop {
+
+/// States by satellite, in a sorted vector: few, and looked up at every epoch.
+template <class State>
+class PerSatellite {
+public:
+    /// The state of a satellite. @param make makes it, from the satellite, when it is met for the first time
+    template <class Make>
+    State& of(SatelliteId satellite, Make&& make) {
+        const auto at =
+            std::lower_bound(states_.begin(), states_.end(), satellite,
+                             [](const std::pair<SatelliteId, State>& s, SatelliteId id) { return s.first < id; });
+        if (at != states_.end() && at->first == satellite) return at->second;
+        return states_.emplace(at, satellite, make(satellite))->second;
+    }
+
+private:
+    std::vector<std::pair<SatelliteId, State>> states_;
+};
 
 /// A random process that is drawn at knots, whole multiples of a spacing in GPS time, and runs through them on a cubic
 /// (Catmull and Rom 1974). It has a rate, and its path does not depend on how often it is looked at.

@@ -3,9 +3,8 @@
 #include <utility>
 
 #include "world/propagation/atmosphere_losses.hpp"
-#include "world/propagation/ionosphere_delay.hpp"
+#include "world/propagation/ionosphere_effects.hpp"
 #include "world/propagation/modern_link_budget.hpp"
-#include "world/propagation/scintillation_indices.hpp"
 #include "world/propagation/signal_in_space_error.hpp"
 #include "world/propagation/troposphere_delay.hpp"
 

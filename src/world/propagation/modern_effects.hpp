@@ -11,13 +11,13 @@
 #include "base/core/result.hpp"
 #include "base/geo/geoid.hpp"
 #include "base/time/utc_time.hpp"
-#include "world/gnss/ionosphere_maps.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 #include "world/propagation/atmosphere_losses.hpp"
-#include "world/propagation/atmosphere_parameters.hpp"
-#include "world/propagation/effect.hpp"
 #include "world/propagation/modern_parameters.hpp"
 #include "world/propagation/named_ionosphere_maps.hpp"
+#include "world/propagation/propagation_effect.hpp"
+#include "world/propagation/propagation_parameters.hpp"
 
 namespace skyloop {
 

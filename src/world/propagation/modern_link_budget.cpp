@@ -4,9 +4,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "world/gnss/interference.hpp"
-#include "world/propagation/free_space.hpp"
-#include "world/propagation/spherical_path.hpp"
+#include "world/gnss/signal.hpp"
+#include "world/propagation/propagation_effect.hpp"
+#include "world/propagation/ray_geometry.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,14 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include "base/core/error_term.hpp"
+#include "base/core/random.hpp"
 #include "base/core/units.hpp"
-#include "world/gnss/global_troposphere.hpp"
-#include "world/gnss/interference.hpp"
-#include "world/gnss/navigation_source.hpp"
-#include "world/gnss/ntcm_g.hpp"
-#include "world/propagation/antenna_pattern.hpp"
-#include "world/propagation/noise.hpp"
+#include "world/gnss/atmosphere.hpp"
+#include "world/gnss/ephemeris.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
+#include "world/gnss/signal.hpp"
+#include "world/propagation/antenna_and_noise.hpp"
 
 namespace skyloop {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "base/core/result.hpp"
-#include "world/gnss/ionosphere_maps.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 
 namespace skyloop {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "world/propagation/antenna_pattern.hpp"
-#include "world/propagation/effect.hpp"
+#include "world/propagation/antenna_and_noise.hpp"
+#include "world/propagation/propagation_effect.hpp"
 #include "world/scene/path_finder.hpp"
 
 namespace skyloop {

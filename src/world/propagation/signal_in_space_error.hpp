@@ -3,10 +3,9 @@
 
 #include <cstdint>
 
-#include "world/propagation/effect.hpp"
 #include "world/propagation/knotted_process.hpp"
 #include "world/propagation/modern_parameters.hpp"
-#include "world/propagation/per_satellite.hpp"
+#include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop {
 

@@ -1,8 +1,11 @@
 /// What a kilometre of air, vapour or rain takes from a signal.
+/// What the droplets of fog and clouds absorb.
 #pragma once
 
+#include <complex>
+
 #include "base/core/units.hpp"
-#include "world/propagation/atmosphere_parameters.hpp"
+#include "world/propagation/propagation_parameters.hpp"
 
 namespace skyloop {
 
@@ -42,5 +45,15 @@ RainCoefficients rain_coefficients(Hertz carrier, Angle elevation, Angle tilt = 
 
 /// Rain, by the model that `rain` names (MODELS.md 3.6 and D-14).
 DecibelsPerKilometre rain_attenuation(const Rain& rain, Hertz carrier, Angle elevation);
+
+/// ε′ + jε″ of liquid water by two Debye relaxations (ITU-R P.840-8, equations 4 to 11).
+std::complex<double> water_permittivity_p840(Hertz carrier, Kelvin temperature);
+
+/// K_l of liquid water droplets, (dB/km)/(g/m³), by Rayleigh scattering (ITU-R P.840-8, equations 2 and 3). Up to 200
+/// GHz.
+double cloud_liquid_coefficient_p840(Hertz carrier, Kelvin temperature);
+
+/// K_l times the content of liquid water.
+DecibelsPerKilometre cloud_attenuation_p840(Hertz carrier, Kelvin temperature, double liquid_water_g_m3);
 
 }  // namespace skyloop

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "detail/hidden_arrival.hpp"
+#include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,8 +4,8 @@
 #include <map>
 #include <memory>
 
-#include "base/core/inplace_vector.hpp"
-#include "world/propagation/effect.hpp"
+#include "base/core/std_additions.hpp"
+#include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop {
 

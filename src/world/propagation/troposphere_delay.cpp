@@ -6,9 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "detail/lowest_elevation.hpp"
-#include "detail/sea_level.hpp"
-#include "world/propagation/reference_atmosphere_p835.hpp"
+#include "world/propagation/ray_geometry.hpp"
+#include "world/propagation/reference_air.hpp"
 
 namespace skyloop {
 namespace {

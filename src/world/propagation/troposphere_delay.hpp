@@ -6,11 +6,10 @@
 #include "base/geo/geoid.hpp"
 #include "base/time/utc_time.hpp"
 #include "world/gnss/atmosphere.hpp"
-#include "world/gnss/troposphere.hpp"
-#include "world/propagation/atmosphere_parameters.hpp"
-#include "world/propagation/effect.hpp"
 #include "world/propagation/knotted_process.hpp"
 #include "world/propagation/modern_parameters.hpp"
+#include "world/propagation/propagation_effect.hpp"
+#include "world/propagation/propagation_parameters.hpp"
 
 namespace skyloop {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "base/core/letter_case.hpp"
+#include "base/core/words.hpp"
 #include "detail/fields.hpp"
 
 namespace skyloop {

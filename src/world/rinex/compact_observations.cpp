@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "detail/fields.hpp"
 
 namespace skyloop::rinex {

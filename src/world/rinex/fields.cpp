@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/core/number_in.hpp"
+#include "base/core/number_text.hpp"
 
 namespace skyloop::rinex {
 

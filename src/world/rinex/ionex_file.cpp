@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "detail/fields.hpp"
 
 namespace skyloop {

@@ -6,7 +6,7 @@
 
 #include "base/core/result.hpp"
 #include "base/time/utc_time.hpp"
-#include "world/gnss/ionosphere_maps.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 
 namespace skyloop {
 

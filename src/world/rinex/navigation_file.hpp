@@ -10,7 +10,6 @@
 
 #include "base/core/result.hpp"
 #include "world/gnss/ephemeris.hpp"
-#include "world/gnss/navigation_source.hpp"
 
 namespace skyloop {
 

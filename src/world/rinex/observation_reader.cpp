@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <set>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "detail/compact_observations.hpp"
-#include "detail/defect_tally.hpp"
+#include "detail/fields.hpp"
 #include "detail/observation_epochs.hpp"
 #include "detail/observation_header.hpp"
 

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/time/utc_time.hpp"
 #include "detail/fields.hpp"
 

@@ -1,7 +1,9 @@
 /// A city before rays can be traced in it: triangles, what they are made of, and trees.
+/// Wide outlines in pieces, each small against the curve of the Earth and the slope of the ground.
 #pragma once
 
 #include <Eigen/Core>
+
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -60,5 +62,11 @@ struct CityModel {
     /// Adds a plane quadrilateral, corners in order around it.
     void add_quad(const std::array<Eigen::Vector3d, 4>& corners, SurfaceKind kind, std::uint8_t material = 0);
 };
+
+/// Halves a ring, its longer side first, until no piece is wider than `width`, m, or than 1/256 of the whole. Pieces
+/// share borders and together cover what the ring covers by the even-odd rule; where that is in several parts, a piece
+/// joins them by edges that are run through twice. Pieces without area are left out, and rings with a corner that is no
+/// number.
+std::vector<std::vector<Eigen::Vector2d>> ring_pieces(std::vector<Eigen::Vector2d> ring, double width);
 
 }  // namespace skyloop

@@ -1,12 +1,87 @@
+// Sequences of planes that were paths a moment ago.
 #include "world/scene/path_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
-#include "detail/path_memory.hpp"
+#include "base/time/gps_time.hpp"
+#include "detail/path_refiner.hpp"
 #include "detail/path_search.hpp"
 
 namespace skyloop {
+
+/// A path that is lost behind an edge is likely to come back: it is kept dormant for a while and tried again each
+/// epoch, which costs a microsecond.
+class PathMemory {
+public:
+    explicit PathMemory(double seconds) : seconds_(seconds) {}
+
+    /// A path found for an instant.
+    void add(const SatelliteSequence& path, GpsTime when);
+    /// Forgets what is older than remembered, or from the future.
+    void forget_old(GpsTime now);
+    /// Proposes all that belongs to a target.
+    void propose_to(PathRefiner& refiner, std::span<const SearchTarget> targets);
+    /// Paths that hold now; those of before that do not stay dormant.
+    void update(std::span<const FoundPath> paths, std::span<const SearchTarget> targets, GpsTime now);
+    /// Marks all that is remembered, so that a search need not try it.
+    void mark(KeySet& tried) const;
+    [[nodiscard]] std::size_t size() const { return entries_.size(); }
+
+private:
+    struct Entry {
+        SatelliteSequence path;
+        std::uint64_t key = 0;
+        GpsTime last;  ///< when it was a path
+    };
+    double seconds_;
+    std::vector<Entry> entries_, next_;
+    KeySet keys_;
+    std::vector<std::pair<SatelliteId, std::uint32_t>> places_;  ///< of targets, by satellite
+};
+
+void PathMemory::add(const SatelliteSequence& path, GpsTime when) {
+    entries_.push_back({path, sequence_key(path.id, planes_of(path.planes)), when});
+}
+
+void PathMemory::forget_old(GpsTime now) {
+    std::erase_if(entries_, [this, now](const Entry& entry) {
+        const double age = difference(now, entry.last).value();
+        return !(age >= 0 && age <= seconds_);
+    });
+}
+
+void PathMemory::propose_to(PathRefiner& refiner, std::span<const SearchTarget> targets) {
+    places_.clear();
+    for (std::uint32_t i = 0; i < targets.size(); ++i)
+        places_.emplace_back(targets[i].id, i);
+    std::sort(places_.begin(), places_.end());
+    for (const Entry& entry : entries_) {
+        const auto place = std::lower_bound(places_.begin(), places_.end(), std::pair(entry.path.id, 0U));
+        if (place != places_.end() && place->first == entry.path.id)
+            refiner.propose(place->second, planes_of(entry.path.planes));
+    }
+}
+
+void PathMemory::update(std::span<const FoundPath> paths, std::span<const SearchTarget> targets, GpsTime now) {
+    next_.clear();
+    keys_.clear();
+    for (const FoundPath& path : paths) {
+        const SatelliteId id = targets[path.target].id;
+        const std::uint64_t key = sequence_key(id, planes_of(path.planes));
+        if (keys_.insert(key)) next_.push_back({{id, path.planes}, key, now});
+    }
+    for (const Entry& entry : entries_)
+        if (keys_.insert(entry.key)) next_.push_back(entry);
+    entries_.swap(next_);
+}
+
+void PathMemory::mark(KeySet& tried) const {
+    for (const Entry& entry : entries_)
+        tried.insert(entry.key);
+}
+
 namespace {
 
 // Beyond this distance between where was searched and where the antenna is, another search does not wait, m.

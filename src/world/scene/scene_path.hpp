@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "base/core/inplace_vector.hpp"
+#include "base/core/std_additions.hpp"
 #include "world/gnss/satellite.hpp"
 
 namespace skyloop {

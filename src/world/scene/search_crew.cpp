@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "base/core/signals_held_back.hpp"
+#include "base/core/threads.hpp"
 
 namespace skyloop {
 SearchCrew::SearchCrew(int threads) {

@@ -1,4 +1,4 @@
-#include "world/scene/stand_on_terrain.hpp"
+#include "world/scene/urban_scene.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "world/scene/ring_pieces.hpp"
+#include "world/scene/city_model.hpp"
 
 namespace skyloop {
 namespace {

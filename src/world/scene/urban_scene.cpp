@@ -11,7 +11,6 @@
 #include "detail/foliage_tree.hpp"
 #include "detail/plane_merge.hpp"
 #include "detail/triangle_tree.hpp"
-#include "world/scene/direction_towards.hpp"
 
 namespace skyloop {
 

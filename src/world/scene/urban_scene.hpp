@@ -1,7 +1,11 @@
 /// A city in which rays are traced.
+/// Directions into a scene's sky.
+/// Buildings and woods whose heights count from the ground, on the ground of a terrain model.
 #pragma once
 
 #include <Eigen/Core>
+
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -12,6 +16,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
+#include "base/core/units.hpp"
 #include "base/geo/local_frame.hpp"
 #include "world/scene/city_model.hpp"
 
@@ -120,5 +125,15 @@ bool sees_no_sky(const UrbanScene& scene, const Eigen::Vector3d& place);
 /// once; looks at every one of them.
 double foliage_length(std::span<const FoliageVolume> foliage, const SceneRay& ray,
                       double length = std::numeric_limits<double>::infinity());
+
+/// A unit vector in east, north and up. @param azimuth from north to east
+inline Eigen::Vector3d direction_towards(Angle azimuth, Angle elevation) {
+    const double horizontal = std::cos(elevation.rad());
+    return {horizontal * std::sin(azimuth.rad()), horizontal * std::cos(azimuth.rad()), std::sin(elevation.rad())};
+}
+
+/// Moves them up or down: a building to the lowest ground below its corners, woods, in pieces of at most 60 m, to the
+/// mean of theirs. Both are in one frame. @returns how many stand beyond the terrain and stay as they were
+std::size_t stand_on_terrain(CityModel& city, const UrbanScene& terrain);
 
 }  // namespace skyloop

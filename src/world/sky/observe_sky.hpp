@@ -1,15 +1,81 @@
 /// From orbits and a place to what stands in the sky.
+/// A signal's way from a moving transmitter to a moving receiver on the turning Earth.
+/// Changes of broadcast records, and what they leave behind.
 #pragma once
 
+#include <Eigen/Core>
+
+#include <map>
+#include <optional>
 #include <vector>
 
+#include "base/core/units.hpp"
+#include "base/geo/frames.hpp"
+#include "world/flow/earlier_records.hpp"
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
-#include "world/gnss/carried_records.hpp"
-#include "world/gnss/navigation_source.hpp"
-#include "world/sky/record_changes.hpp"
+#include "world/gnss/ephemeris.hpp"
+#include "world/gnss/orbit.hpp"
 
 namespace skyloop {
+
+/// A point and how it moves in the Earth-fixed frame.
+struct EcefMotion {
+    Position<Ecef> position;
+    Velocity<Ecef> velocity;
+};
+
+/// A point in the ECEF frame of the transmission instant, in that of the reception instant `travel_time` later:
+/// Rz(ω_e τ), MODELS.md 3.4.
+Position<Ecef> in_reception_frame(const Position<Ecef>& at_transmission, Seconds travel_time);
+
+/// The derivative, by the travel time τ, of the range |Rz(ω_e τ) r_s(t − τ) − r_r(t)|.
+/// @param transmitter at t − τ, in the frame of that instant
+/// @param receiver at t
+MetresPerSecond light_time_slope(const EcefMotion& transmitter, const Position<Ecef>& receiver, Seconds travel_time);
+
+/// The derivative, by reception time, of the light-time range ρ = |Rz(ω_e τ) r_s(t − τ) − r_r(t)| with τ = ρ/c.
+/// @param transmitter at transmission, in the frame of that instant
+/// @param receiver at reception
+MetresPerSecond light_time_range_rate(const EcefMotion& transmitter, const EcefMotion& receiver, Seconds travel_time);
+
+/// A ray from a satellite to the antenna.
+struct RecordRay {
+    Eigen::Vector3d way;       ///< from the antenna to the satellite, in the frame of the reception, m
+    Eigen::Vector3d velocity;  ///< of the satellite against the antenna, m/s
+    Seconds travel_time;
+};
+
+/// Makes a smooth path of the records of a satellite, for models whose orbits are not quite those of the broadcast. A
+/// record is the prediction of one upload and the next differs by decimetres to metres; the satellite itself knows
+/// nothing of it. So the present record's range goes on from the one before, whose share falls to nothing in five
+/// minutes by a cubic without a kink. Of steps above 10 m, as after a manoeuvre or of SBAS satellites that tell their
+/// orbit by coarse parabolas, nothing is smoothed (our decisions).
+///
+/// State: the last changes of each satellite. They hang on the records alone: whoever looks first after a change sees
+/// the same.
+class RecordChanges {
+public:
+    /// @param record the one that serves its satellite at `now`
+    EarlierRecords at(const Ephemeris& record, const NavigationSource& source, GpsTime now, const RecordRay& ray);
+
+private:
+    struct Change {
+        GpsTime time;  ///< the first instant of the record behind it
+        Ephemeris before;
+    };
+    struct Satellite {
+        GpsTime looked;
+        std::optional<Ephemeris> record;  ///< that served then
+        std::vector<Change> changes;
+        std::optional<GpsTime> jumped;
+    };
+    static void follow(Satellite& satellite, const Ephemeris& record, const NavigationSource& source, GpsTime now);
+    static void find_changes(Satellite& satellite, SatelliteId id, const NavigationSource& source, GpsTime now);
+    static void add_change(Satellite& satellite, const Change& change, const Ephemeris& after);
+
+    std::map<SatelliteId, Satellite> satellites_;
+};
 
 /// Every satellite of `source` above the horizon at `truth.time`, with light time iterated and the Earth's rotation
 /// during it (MODELS.md 3.4). Satellites without a valid record are absent.

@@ -5,7 +5,7 @@
 
 #include "base/core/units.hpp"
 #include "base/geo/frames.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
 
 namespace skyloop {
 

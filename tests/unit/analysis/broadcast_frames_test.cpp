@@ -8,14 +8,13 @@
 #include <set>
 
 #include "../../support/oracle_table.hpp"
-#include "base/core/bit_field.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/bytes.hpp"
+#include "base/core/files.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
-#include "world/gnss/broadcast_d1.hpp"
+#include "world/gnss/broadcast_galileo_beidou.hpp"
 #include "world/gnss/broadcast_glonass.hpp"
-#include "world/gnss/broadcast_inav.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 #include "world/rinex/navigation_file.hpp"
 

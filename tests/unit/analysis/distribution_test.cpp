@@ -1,4 +1,4 @@
-#include "study/analysis/distribution.hpp"
+#include "study/analysis/statistics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/core/random.hpp"
-#include "study/analysis/signal_strength.hpp"
+#include "study/analysis/fix_series.hpp"
 
 namespace skyloop {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "motion/tracks/read_track.hpp"
 #include "motion/trajectory/track.hpp"
 #include "receiver/observed/observed_log.hpp"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "base/time/utc_time.hpp"
-#include "study/analysis/tracks_csv.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/analysis/time_correlation.hpp"
+#include "study/analysis/statistics.hpp"
 
 #include <gtest/gtest.h>
 

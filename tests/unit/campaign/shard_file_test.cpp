@@ -1,4 +1,4 @@
-#include "campaigns/campaign/shard_file.hpp"
+#include "campaigns/campaign/shard_results.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

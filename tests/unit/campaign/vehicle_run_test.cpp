@@ -1,4 +1,4 @@
-#include "campaigns/campaign/detail/vehicle_run.hpp"
+#include "detail/vehicle_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Intervals against tables made by others, and how often they hold.
-#include "campaigns/campaign_report/intervals.hpp"
+#include "campaigns/campaign_report/statistical_tests.hpp"
 
 #include <gtest/gtest.h>
 

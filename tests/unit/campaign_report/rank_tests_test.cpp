@@ -1,5 +1,5 @@
 // Rank tests against scipy, and how often they cry wolf.
-#include "campaigns/campaign_report/rank_tests.hpp"
+#include "campaigns/campaign_report/statistical_tests.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "mesh_support.hpp"
 #include "support/oracle_table.hpp"
 #include "world/city/city_file.hpp"

@@ -1,4 +1,4 @@
-#include "world/city/detail/convex_hull.hpp"
+#include "world/city/footprint.hpp"
 
 #include <gtest/gtest.h>
 

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "mesh_support.hpp"
 #include "world/city/city_file.hpp"
 

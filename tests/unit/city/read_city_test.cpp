@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "base/core/archive.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "mesh_support.hpp"
 #include "support/oracle_table.hpp"
 #include "support/packed.hpp"

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "base/geo/geodesic.hpp"
+#include "base/geo/geodetic.hpp"
 #include "mesh_support.hpp"
 #include "support/flat_geoid.hpp"
 #include "world/city/city_file.hpp"

@@ -1,7 +1,7 @@
 #include "base/core/random.hpp"
 #include "client_bench.hpp"
+#include "run/client/careful_client.hpp"
 #include "run/client/configuration_dialogue.hpp"
-#include "run/client/port_hunt.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,5 +1,5 @@
 #include "client_bench.hpp"
-#include "run/client/ubx_configuration.hpp"
+#include "run/client/configuration_dialogue.hpp"
 
 namespace skyloop::test {
 namespace {

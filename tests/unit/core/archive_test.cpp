@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "support/oracle_table.hpp"
 #include "support/packed.hpp"
 

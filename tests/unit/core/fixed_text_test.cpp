@@ -1,4 +1,4 @@
-#include "base/core/fixed_text.hpp"
+#include "base/core/number_text.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

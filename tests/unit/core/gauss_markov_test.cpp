@@ -1,4 +1,4 @@
-#include "base/core/gauss_markov.hpp"
+#include "base/core/random.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/core/job_thread.hpp"
+#include "base/core/threads.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/core/make_folder.hpp"
+#include "base/core/files.hpp"
 
 #include <gtest/gtest.h>
 

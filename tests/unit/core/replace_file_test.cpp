@@ -1,4 +1,4 @@
-#include "base/core/replace_file.hpp"
+#include "base/core/files.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -11,7 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include "base/core/text_file.hpp"
 #include "unit/transport/temporary_folder.hpp"
 
 namespace skyloop {

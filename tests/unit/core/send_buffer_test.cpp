@@ -1,4 +1,4 @@
-#include "base/core/send_buffer.hpp"
+#include "base/core/bytes.hpp"
 
 #include <gtest/gtest.h>
 

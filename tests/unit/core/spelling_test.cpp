@@ -1,4 +1,4 @@
-#include "base/core/spelling.hpp"
+#include "base/core/words.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/core/table_line.hpp"
+#include "base/core/table_text.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

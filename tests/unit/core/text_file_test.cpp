@@ -1,4 +1,4 @@
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

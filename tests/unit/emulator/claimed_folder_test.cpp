@@ -1,5 +1,5 @@
 // A folder that one run at a time writes into.
-#include "run/emulator/claimed_folder.hpp"
+#include "run/emulator/run_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "run/emulator/deadline_grants.hpp"
+#include "run/emulator/real_time.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "receiver/protocol/nmea_sentence.hpp"
-#include "run/feed/failure_injection.hpp"
+#include "run/feed/mavlink_component.hpp"
 #include "support/run_parts.hpp"
 
 namespace skyloop::test {

@@ -8,7 +8,7 @@
 #include <csignal>
 #include <set>
 
-#include "receiver/protocol/nmea_decode.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"

@@ -1,5 +1,5 @@
 // When epochs are, also after a client has changed their period.
-#include "run/emulator/epoch_grid.hpp"
+#include "run/emulator/timing.hpp"
 
 #include <gtest/gtest.h>
 

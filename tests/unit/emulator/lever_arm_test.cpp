@@ -1,5 +1,5 @@
 // Antennas beside the path of their vehicle.
-#include "run/emulator/lever_arm.hpp"
+#include "run/emulator/antenna_path.hpp"
 
 #include <gtest/gtest.h>
 

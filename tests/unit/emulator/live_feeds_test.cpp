@@ -9,8 +9,8 @@
 
 #include <thread>
 
-#include "base/core/steady_clock.hpp"
-#include "run/emulator/run_summary.hpp"
+#include "base/core/threads.hpp"
+#include "run/emulator/assembly.hpp"
 #include "support/run_parts.hpp"
 #include "wire/transport/file_descriptor.hpp"
 

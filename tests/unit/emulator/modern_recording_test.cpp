@@ -13,8 +13,8 @@
 #include "unit/transport/temporary_folder.hpp"
 #include "world/gnss/orbit.hpp"
 #include "world/rinex/navigation_file.hpp"
-#include "world/rinex/navigation_writer.hpp"
 #include "world/rinex/observation_reader.hpp"
+#include "world/rinex/rinex_writer.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "run/emulator/moved_path.hpp"
+#include "run/emulator/antenna_path.hpp"
 
 #include <gtest/gtest.h>
 

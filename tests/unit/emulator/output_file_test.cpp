@@ -1,4 +1,4 @@
-#include "run/emulator/output_file.hpp"
+#include "run/emulator/run_files.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

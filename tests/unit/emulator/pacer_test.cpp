@@ -1,12 +1,10 @@
-#include "run/emulator/pacer.hpp"
+#include "run/emulator/timing.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/time.h>
 
 #include <csignal>
-
-#include "run/emulator/lateness.hpp"
 
 namespace skyloop {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "run/emulator/run_summary.hpp"
+#include "run/emulator/assembly.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geo/local_frame.hpp"
-#include "run/emulator/run_summary.hpp"
+#include "run/emulator/assembly.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"
 #include "world/gnss/constants.hpp"

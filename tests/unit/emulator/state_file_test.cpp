@@ -1,5 +1,5 @@
 // The memory of a receiver that is switched off.
-#include "run/emulator/state_file.hpp"
+#include "run/emulator/run_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/geo/local_frame.hpp"
-#include "run/emulator/run_summary.hpp"
+#include "run/emulator/assembly.hpp"
 #include "run/emulator/wires.hpp"
 #include "support/run_parts.hpp"
 #include "unit/transport/temporary_folder.hpp"

@@ -1,4 +1,4 @@
-#include "run/emulator/thread_priority.hpp"
+#include "run/emulator/real_time.hpp"
 
 #include <gtest/gtest.h>
 #include <sched.h>

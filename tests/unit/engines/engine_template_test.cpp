@@ -1,9 +1,8 @@
-#include "campaigns/engines/engine_template.hpp"
+#include "campaigns/engines/engine_task.hpp"
 
 #include <gmock/gmock.h>
 
-#include "campaigns/engines/parallel_scripts.hpp"
-#include "campaigns/engines/slurm_scripts.hpp"
+#include "campaigns/engines/engine_scripts.hpp"
 #include "engine_rig.hpp"
 
 namespace skyloop {

@@ -1,5 +1,5 @@
 // The manifests' values; a parser of YAML and a schema look at them in tests/cluster.
-#include "campaigns/engines/kubernetes_manifest.hpp"
+#include "campaigns/engines/engine_scripts.hpp"
 
 #include <gmock/gmock.h>
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "base/core/process.hpp"
-#include "campaigns/engines/parallel_scripts.hpp"
+#include "campaigns/engines/engine_scripts.hpp"
 #include "engine_rig.hpp"
 
 namespace skyloop {

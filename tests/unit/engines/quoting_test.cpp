@@ -1,5 +1,5 @@
 // Words that another language reads back as they were; a real shell is asked.
-#include "campaigns/engines/quoting.hpp"
+#include "campaigns/engines/engine_task.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "receiver/error_model/ground_motion.hpp"
+#include "receiver/error_model/fix_builder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "receiver/error_model/make_error_model.hpp"
+#include "receiver/error_model/error_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,12 +6,8 @@
 #include <typeinfo>
 
 #include "receiver/error_model/baseline.hpp"
-#include "receiver/error_model/constant_sigma.hpp"
-#include "receiver/error_model/ideal.hpp"
 #include "receiver/error_model/model_effects.hpp"
-#include "receiver/error_model/refraction.hpp"
-#include "receiver/error_model/satellite_count.hpp"
-#include "receiver/error_model/whole_path.hpp"
+#include "receiver/error_model/simple_models.hpp"
 #include "support/model_sky.hpp"
 
 namespace skyloop {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "base/geo/local_frame.hpp"
-#include "receiver/error_model/satellite_count.hpp"
-#include "receiver/error_model/uere.hpp"
+#include "receiver/error_model/baseline.hpp"
+#include "receiver/error_model/simple_models.hpp"
 #include "support/model_sky.hpp"
 
 namespace skyloop {

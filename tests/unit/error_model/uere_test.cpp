@@ -1,4 +1,4 @@
-#include "receiver/error_model/uere.hpp"
+#include "receiver/error_model/baseline.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "receiver/error_model/selection.hpp"
+#include "receiver/error_model/fix_builder.hpp"
 #include "support/model_sky.hpp"
 #include "support/oracle_table.hpp"
-#include "world/propagation/niell_troposphere_delay.hpp"
-#include "world/propagation/tec_ionosphere_delay.hpp"
+#include "world/propagation/sensor_model_delays.hpp"
 
 namespace skyloop {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/geo/local_frame.hpp"
 #include "receiver_bench.hpp"
-#include "run/fault/checked_command.hpp"
+#include "run/fault/command.hpp"
 
 namespace skyloop::fault_test {
 namespace {

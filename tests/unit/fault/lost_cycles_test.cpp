@@ -1,4 +1,4 @@
-#include "run/fault/lost_cycles.hpp"
+#include "run/fault/fault_kind.hpp"
 
 #include <gtest/gtest.h>
 

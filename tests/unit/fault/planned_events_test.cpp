@@ -1,4 +1,4 @@
-#include "run/fault/planned_events.hpp"
+#include "run/fault/timeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "receiver/protocol/ubx_relative.hpp"
+#include "receiver/protocol/ubx_services.hpp"
 #include "receiver_bench.hpp"
-#include "run/fault/checked_command.hpp"
+#include "run/fault/command.hpp"
 
 namespace skyloop {
 namespace {

@@ -15,7 +15,7 @@
 #include "firmware/config/config_keys.hpp"
 #include "firmware/receiver.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "run/fault/fault_kind.hpp"
 

@@ -6,7 +6,6 @@
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_hardware.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
-#include "receiver/protocol/ubx_security.hpp"
 #include "receiver_bench.hpp"
 
 namespace skyloop {

@@ -17,7 +17,7 @@
 #include "run/fault/fault_kind.hpp"
 #include "support/model_sky.hpp"
 #include "support/modern_run.hpp"
-#include "world/propagation/free_space.hpp"
+#include "world/propagation/propagation_effect.hpp"
 #include "world/sky/observe_sky.hpp"
 
 namespace skyloop::test {

@@ -5,7 +5,6 @@
 
 #include <set>
 
-#include "run/fault/checked_command.hpp"
 #include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 #include "run/fault/known_names.hpp"

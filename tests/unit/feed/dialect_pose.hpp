@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "base/geo/local_map.hpp"
+#include "base/geo/simulator_frames.hpp"
 #include "run/feed/feed_dialect.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "run/feed/failure_injection.hpp"
+#include "run/feed/mavlink_component.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <thread>
 
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 #include "run/feed/truth_feed.hpp"
 #include "wire/transport/file_descriptor.hpp"
 

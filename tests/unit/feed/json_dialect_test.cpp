@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/geo/local_frame.hpp"
 #include "feed_asides.hpp"
 #include "run/feed/feed_dialect.hpp"

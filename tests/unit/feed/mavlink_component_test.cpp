@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/core/random.hpp"
-#include "receiver/protocol/mavlink_modes.hpp"
+#include "receiver/protocol/mavlink.hpp"
 
 namespace skyloop {
 namespace {

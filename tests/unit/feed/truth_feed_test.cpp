@@ -14,7 +14,7 @@
 #include <string>
 #include <thread>
 
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 #include "dialect_bytes.hpp"
 #include "wire/transport/file_descriptor.hpp"
 

@@ -1,5 +1,5 @@
 // What a receiver says to assistance.
-#include "firmware/assistance.hpp"
+#include "firmware/corrections_and_assistance.hpp"
 
 #include <gtest/gtest.h>
 

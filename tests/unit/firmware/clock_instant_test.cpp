@@ -1,4 +1,4 @@
-#include "firmware/clock_instant.hpp"
+#include "firmware/navigation_state.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,7 @@
 #include <set>
 #include <string>
 
-#include "firmware/config/message_names.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "firmware/config/config_handler.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 

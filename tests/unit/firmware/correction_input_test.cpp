@@ -1,4 +1,4 @@
-#include "firmware/correction_input.hpp"
+#include "firmware/corrections_and_assistance.hpp"
 
 #include <gtest/gtest.h>
 

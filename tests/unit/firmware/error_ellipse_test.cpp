@@ -1,4 +1,4 @@
-#include "firmware/error_ellipse.hpp"
+#include "firmware/solution_covariance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include "firmware/receiver.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_raw.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/geo/geodesic.hpp"
+#include "base/geo/geodetic.hpp"
 #include "legacy_bench.hpp"
 #include "receiver/protocol/ubx_cfg_navigation.hpp"
 #include "receiver/protocol/ubx_services.hpp"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "legacy_bench.hpp"
-#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_device.hpp"
 #include "receiver/protocol/ubx_cfg_navigation.hpp"
 
 namespace skyloop::firmware {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "legacy_bench.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -2,8 +2,6 @@
 
 #include "receiver/protocol/ubx_hardware.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
-#include "receiver/protocol/ubx_ports.hpp"
-#include "receiver/protocol/ubx_security.hpp"
 #include "ubx_reports.hpp"
 
 namespace skyloop::firmware {

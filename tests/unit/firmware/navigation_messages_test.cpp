@@ -5,7 +5,6 @@
 
 #include "base/geo/local_frame.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
-#include "receiver/protocol/ubx_relative.hpp"
 #include "receiver/protocol/ubx_services.hpp"
 #include "ubx_reports.hpp"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/geo/geodetic.hpp"
-#include "firmware/messages/satellite_parts.hpp"
+#include "firmware/messages/make_message.hpp"
 #include "firmware/receiver.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/stream_splitter.hpp"

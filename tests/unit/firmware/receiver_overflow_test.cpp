@@ -6,8 +6,7 @@
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
-#include "receiver/protocol/ubx_ports.hpp"
+#include "receiver/protocol/ubx_mon.hpp"
 #include "sample_epochs.hpp"
 
 namespace skyloop::firmware {

@@ -6,7 +6,6 @@
 #include "base/geo/geodetic.hpp"
 #include "firmware/receiver.hpp"
 #include "receiver/protocol/rtcm3.hpp"
-#include "receiver/protocol/rtcm3_msm.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "ubx_reports.hpp"
 #include "world/gnss/constants.hpp"

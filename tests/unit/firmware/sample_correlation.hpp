@@ -1,7 +1,7 @@
 /// Errors that go together, for the tests of the receiver.
 #pragma once
 
-#include "world/flow/error_correlation.hpp"
+#include "world/flow/fix.hpp"
 
 namespace skyloop::firmware {
 

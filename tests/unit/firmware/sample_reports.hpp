@@ -11,7 +11,7 @@
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/nmea_commands.hpp"
-#include "receiver/protocol/nmea_decode.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
 #include "sample_epochs.hpp"
 
 namespace skyloop::firmware {

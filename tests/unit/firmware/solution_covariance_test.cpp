@@ -9,7 +9,7 @@
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/messages/other_protocols.hpp"
-#include "firmware/messages/sbf_cartesian_messages.hpp"
+#include "firmware/messages/sbf_messages.hpp"
 #include "firmware/state_tracker.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "sample_correlation.hpp"

@@ -1,5 +1,5 @@
 // Attitudes against the Earth as a whole.
-#include "base/geo/body_frame.hpp"
+#include "base/geo/attitude.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/geo/level_frame.hpp"
+#include "base/geo/simulator_frames.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/geo/local_map.hpp"
+#include "base/geo/simulator_frames.hpp"
 
 #include <gtest/gtest.h>
 

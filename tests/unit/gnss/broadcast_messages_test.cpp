@@ -5,11 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "world/gnss/broadcast_d1.hpp"
+#include "world/gnss/broadcast_galileo_beidou.hpp"
 #include "world/gnss/broadcast_glonass.hpp"
-#include "world/gnss/broadcast_inav.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
-#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
 
 namespace skyloop {

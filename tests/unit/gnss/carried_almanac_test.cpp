@@ -1,10 +1,8 @@
-#include "world/gnss/carried_almanac.hpp"
+#include "world/gnss/orbit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {

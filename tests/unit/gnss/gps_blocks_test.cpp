@@ -1,4 +1,4 @@
-#include "world/gnss/gps_blocks.hpp"
+#include "world/gnss/signal.hpp"
 
 #include <gtest/gtest.h>
 

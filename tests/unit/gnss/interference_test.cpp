@@ -1,4 +1,4 @@
-#include "world/gnss/interference.hpp"
+#include "world/gnss/signal.hpp"
 
 #include <gtest/gtest.h>
 

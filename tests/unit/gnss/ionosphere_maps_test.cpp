@@ -1,4 +1,4 @@
-#include "world/gnss/ionosphere_maps.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/navigation_data.hpp"
 
 #include <gtest/gtest.h>
 

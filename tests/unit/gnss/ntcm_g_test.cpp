@@ -1,4 +1,4 @@
-#include "world/gnss/ntcm_g.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 
 #include <gtest/gtest.h>
 

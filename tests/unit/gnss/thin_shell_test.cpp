@@ -1,4 +1,4 @@
-#include "world/gnss/thin_shell.hpp"
+#include "world/gnss/shell_ionosphere.hpp"
 
 #include <gtest/gtest.h>
 

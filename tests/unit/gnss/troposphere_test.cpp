@@ -1,4 +1,4 @@
-#include "world/gnss/troposphere.hpp"
+#include "world/gnss/atmosphere.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "measured_sky.hpp"
-#include "receiver/measurement/scintillation.hpp"
+#include "receiver/measurement/tracking_jitter.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "receiver/measurement/multipath_error.hpp"
+#include "receiver/measurement/correlator_multipath.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "receiver/measurement/scintillation.hpp"
+#include "receiver/measurement/tracking_jitter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/time/utc_time.hpp"
 #include "receiver/observed/dataflash.hpp"
 #include "receiver/protocol/ubx_mon.hpp"

@@ -1,5 +1,5 @@
 // A line of JSON for an epoch.
-#include "run/output/epoch_record.hpp"
+#include "run/output/epoch_messages.hpp"
 
 #include <gtest/gtest.h>
 

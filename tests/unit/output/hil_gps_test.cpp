@@ -1,5 +1,5 @@
 // HIL_GPS: units, what is unknown, and the limits of its fields.
-#include "run/output/hil_gps.hpp"
+#include "run/output/epoch_messages.hpp"
 
 #include <gtest/gtest.h>
 

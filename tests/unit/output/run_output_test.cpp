@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/core/steady_clock.hpp"
+#include "base/core/threads.hpp"
 #include "epochs.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
 #include "receiver/protocol/msp.hpp"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "study/plot/city_run_plot.hpp"
-#include "study/plot/coverage_plot.hpp"
 #include "study/plot/sky_plot.hpp"
 #include "unit/plot/well_formed.hpp"
 #include "world/scene/generated_city.hpp"

@@ -1,4 +1,4 @@
-#include "world/propagation/antenna_pattern.hpp"
+#include "world/propagation/antenna_and_noise.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "world/propagation/atmosphere_parameters.hpp"
+#include "world/propagation/propagation_parameters.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "world/propagation/cloud_attenuation_p840.hpp"
+#include "world/propagation/specific_attenuation.hpp"
 
 #include <gtest/gtest.h>
 

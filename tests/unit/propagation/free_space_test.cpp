@@ -1,4 +1,4 @@
-#include "world/propagation/free_space.hpp"
+#include "world/propagation/propagation_effect.hpp"
 
 #include <gtest/gtest.h>
 

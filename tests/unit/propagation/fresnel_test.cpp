@@ -1,4 +1,4 @@
-#include "world/propagation/fresnel.hpp"
+#include "world/propagation/reflection.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,6 @@
 
 #include "support/oracle_table.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/propagation/detail/gas_attenuation_p676_table.hpp"
 
 namespace skyloop {
 namespace {

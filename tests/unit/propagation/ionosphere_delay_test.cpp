@@ -1,4 +1,4 @@
-#include "world/propagation/ionosphere_delay.hpp"
+#include "world/propagation/ionosphere_effects.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

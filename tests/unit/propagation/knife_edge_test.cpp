@@ -1,4 +1,4 @@
-#include "world/propagation/knife_edge.hpp"
+#include "world/propagation/diffraction.hpp"
 
 #include <gtest/gtest.h>
 

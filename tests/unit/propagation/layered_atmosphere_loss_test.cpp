@@ -1,4 +1,4 @@
-#include "world/propagation/layered_atmosphere_loss.hpp"
+#include "world/propagation/sensor_model_losses.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,9 @@
-#include "world/propagation/link_budget.hpp"
+#include "world/propagation/sensor_model_losses.hpp"
 
 #include <gtest/gtest.h>
 
 #include "support/oracle_table.hpp"
 #include "unit/propagation/one_satellite.hpp"
-#include "world/propagation/layered_atmosphere_loss.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "world/propagation/noise.hpp"
+#include "world/propagation/antenna_and_noise.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,7 @@
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/propagation/effect.hpp"
-#include "world/propagation/free_space.hpp"
+#include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop::test {
 

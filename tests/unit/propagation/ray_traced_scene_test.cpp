@@ -6,8 +6,7 @@
 
 #include "base/geo/local_frame.hpp"
 #include "modern_sky.hpp"
-#include "world/propagation/knife_edge.hpp"
-#include "world/propagation/scene_edges.hpp"
+#include "world/propagation/diffraction.hpp"
 
 namespace skyloop::test {
 namespace {

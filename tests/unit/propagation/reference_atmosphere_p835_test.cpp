@@ -1,4 +1,4 @@
-#include "world/propagation/reference_atmosphere_p835.hpp"
+#include "world/propagation/reference_air.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "world/propagation/reflected_wave.hpp"
+#include "world/propagation/reflection.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 
 #include "support/oracle_table.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/propagation/fresnel.hpp"
 
 namespace skyloop::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "world/propagation/refraction_delay.hpp"
+#include "world/propagation/sensor_model_delays.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "world/propagation/refractivity.hpp"
+#include "world/propagation/reference_air.hpp"
 
 #include <gtest/gtest.h>
 

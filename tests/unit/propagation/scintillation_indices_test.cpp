@@ -1,11 +1,11 @@
-#include "world/propagation/scintillation_indices.hpp"
+#include "world/propagation/ionosphere_effects.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "modern_sky.hpp"
-#include "world/gnss/nequick_tables.hpp"
+#include "world/gnss/nequick_g.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,10 +1,10 @@
-#include "world/propagation/spherical_path.hpp"
+#include "world/propagation/ray_geometry.hpp"
 
 #include <gtest/gtest.h>
 
 #include "support/oracle_table.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/propagation/free_space.hpp"
+#include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop {
 namespace {

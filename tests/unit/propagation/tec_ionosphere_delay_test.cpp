@@ -1,4 +1,4 @@
-#include "world/propagation/tec_ionosphere_delay.hpp"
+#include "world/propagation/sensor_model_delays.hpp"
 
 #include <gtest/gtest.h>
 

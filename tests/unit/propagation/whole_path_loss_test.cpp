@@ -1,4 +1,4 @@
-#include "world/propagation/whole_path_loss.hpp"
+#include "world/propagation/sensor_model_losses.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,11 +4,11 @@
 
 #include <limits>
 
+#include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/mavlink.hpp"
-#include "receiver/protocol/message_listing.hpp"
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/sbf_blocks.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
+#include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 #include "receiver/protocol/ubx_names.hpp"
 #include "receiver/protocol/ubx_nav.hpp"

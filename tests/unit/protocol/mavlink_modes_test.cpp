@@ -1,4 +1,4 @@
-#include "receiver/protocol/mavlink_modes.hpp"
+#include "receiver/protocol/mavlink.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

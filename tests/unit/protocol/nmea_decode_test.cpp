@@ -1,4 +1,4 @@
-#include "receiver/protocol/nmea_decode.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "base/core/files.hpp"
 #include "base/core/random.hpp"
-#include "base/core/text_file.hpp"
 #include "support/oracle_table.hpp"
 
 namespace skyloop {

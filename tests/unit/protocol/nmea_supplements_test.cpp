@@ -1,10 +1,9 @@
-#include "receiver/protocol/nmea_supplements.hpp"
+#include "receiver/protocol/nmea_messages.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/core/random.hpp"
-#include "receiver/protocol/nmea_decode.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,5 +1,5 @@
 // Payloads and false beginnings, told apart by the time.
-#include "receiver/protocol/patient_splitter.hpp"
+#include "receiver/protocol/stream_splitter.hpp"
 
 #include <gtest/gtest.h>
 

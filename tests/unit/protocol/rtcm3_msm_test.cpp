@@ -1,11 +1,10 @@
-#include "receiver/protocol/rtcm3_msm.hpp"
+#include "receiver/protocol/rtcm3.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/core/bit_field.hpp"
-#include "receiver/protocol/rtcm3.hpp"
+#include "base/core/bytes.hpp"
 #include "world/gnss/constants.hpp"
 
 namespace skyloop {

@@ -5,8 +5,8 @@
 #include <array>
 #include <map>
 
-#include "base/core/bit_field.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/bytes.hpp"
+#include "base/core/files.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "support/oracle_table.hpp"
 

@@ -3,7 +3,6 @@
 
 #include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/known_sbf.hpp"
-#include "receiver/protocol/message_listing.hpp"
 
 namespace skyloop {
 namespace {

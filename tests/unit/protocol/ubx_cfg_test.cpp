@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "receiver/protocol/ubx_cfg_hardware.hpp"
+#include "receiver/protocol/ubx_cfg_device.hpp"
 #include "receiver/protocol/ubx_cfg_navigation.hpp"
-#include "receiver/protocol/ubx_cfg_output.hpp"
 
 namespace skyloop {
 namespace {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "receiver/protocol/decoded_message.hpp"
-#include "receiver/protocol/message_listing.hpp"
+#include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/ubx_names.hpp"
 #include "support/ubx_message_types.hpp"
 

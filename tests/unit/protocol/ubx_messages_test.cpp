@@ -3,7 +3,7 @@
 #include <cctype>
 #include <map>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_names.hpp"
 #include "support/oracle_table.hpp"

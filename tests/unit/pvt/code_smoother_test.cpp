@@ -1,4 +1,4 @@
-#include "receiver/pvt/code_smoother.hpp"
+#include "receiver/pvt/observation_equations.hpp"
 
 #include <gtest/gtest.h>
 

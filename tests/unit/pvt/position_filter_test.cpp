@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "base/core/gauss_markov.hpp"
 #include "base/core/random.hpp"
 
 namespace skyloop {

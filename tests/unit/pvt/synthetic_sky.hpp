@@ -12,7 +12,7 @@
 #include "world/flow/observations.hpp"
 #include "world/gnss/constants.hpp"
 #include "world/gnss/dop.hpp"
-#include "world/gnss/navigation_source.hpp"
+#include "world/gnss/ephemeris.hpp"
 #include "world/gnss/orbit.hpp"
 #include "world/gnss/signal.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
 #include "world/gnss/navigation_data.hpp"

@@ -1,4 +1,4 @@
-#include "world/rinex/detail/compact_observations.hpp"
+#include "detail/compact_observations.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/core/archive.hpp"
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "support/oracle_table.hpp"
 #include "support/packed.hpp"
 #include "world/rinex/observation_reader.hpp"

@@ -1,4 +1,4 @@
-#include "world/rinex/navigation_writer.hpp"
+#include "world/rinex/rinex_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

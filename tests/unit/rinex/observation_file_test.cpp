@@ -1,4 +1,4 @@
-#include "world/rinex/observation_file.hpp"
+#include "world/rinex/rinex_writer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

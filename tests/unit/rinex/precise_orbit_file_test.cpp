@@ -6,7 +6,7 @@
 
 #include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
-#include "world/gnss/nominal_constellation.hpp"
+#include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
 
 namespace skyloop::test {

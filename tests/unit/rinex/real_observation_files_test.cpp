@@ -5,7 +5,7 @@
 
 #include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
-#include "world/gnss/gps_blocks.hpp"
+#include "world/gnss/signal.hpp"
 #include "world/rinex/observation_reader.hpp"
 
 namespace skyloop::test {

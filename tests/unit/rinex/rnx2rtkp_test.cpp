@@ -8,12 +8,11 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "support/oracle_table.hpp"
 #include "world/rinex/navigation_file.hpp"
-#include "world/rinex/navigation_writer.hpp"
-#include "world/rinex/observation_file.hpp"
 #include "world/rinex/observation_reader.hpp"
+#include "world/rinex/rinex_writer.hpp"
 
 namespace skyloop::test {
 namespace {

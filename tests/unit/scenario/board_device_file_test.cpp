@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "run/scenario/device_file.hpp"
+#include "run/scenario/board_files.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,4 +1,4 @@
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 #include "support/oracle_table.hpp"
 
 #include <gmock/gmock.h>

@@ -6,8 +6,7 @@
 
 #include "firmware/config/config_handler.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_cfg_values.hpp"
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 
 namespace skyloop {
 namespace {

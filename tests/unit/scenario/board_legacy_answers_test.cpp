@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "firmware/config/config_handler.hpp"
-#include "run/scenario/board_file.hpp"
+#include "run/scenario/board_files.hpp"
 
 namespace skyloop {
 namespace {

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run/scenario/scenario_changes.hpp"
 #include "run/scenario/scenario_file.hpp"
 #include "scenario_text.hpp"
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation.hpp"
 #include "scenario_text.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "world/scene/ring_pieces.hpp"
+#include "world/scene/city_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "world/scene/stand_on_terrain.hpp"
+#include "world/scene/urban_scene.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "world/sky/light_time.hpp"
+#include "world/sky/observe_sky.hpp"
 
 #include <gtest/gtest.h>
 

@@ -13,11 +13,9 @@
 #include "support/oracle_table.hpp"
 #include "world/gnss/constants.hpp"
 #include "world/gnss/navigation_data.hpp"
-#include "world/gnss/nominal_constellation.hpp"
 #include "world/gnss/orbit.hpp"
 #include "world/gnss/signal.hpp"
 #include "world/rinex/navigation_file.hpp"
-#include "world/sky/light_time.hpp"
 
 namespace skyloop::test {
 namespace {

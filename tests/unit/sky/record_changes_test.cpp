@@ -1,4 +1,4 @@
-#include "world/sky/record_changes.hpp"
+#include "world/sky/observe_sky.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include "world/gnss/constants.hpp"
 #include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
-#include "world/sky/observe_sky.hpp"
 
 namespace skyloop {
 namespace {

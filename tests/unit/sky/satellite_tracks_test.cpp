@@ -7,7 +7,6 @@
 
 #include "support/oracle_table.hpp"
 #include "world/gnss/navigation_data.hpp"
-#include "world/gnss/nominal_constellation.hpp"
 #include "world/gnss/orbit.hpp"
 #include "world/rinex/navigation_file.hpp"
 

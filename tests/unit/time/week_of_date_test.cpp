@@ -1,4 +1,4 @@
-#include "base/time/week_of_date.hpp"
+#include "base/time/utc_time.hpp"
 
 #include <gtest/gtest.h>
 

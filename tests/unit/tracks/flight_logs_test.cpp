@@ -10,7 +10,7 @@
 #include <random>
 #include <sstream>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/geo/local_frame.hpp"
 #include "base/time/utc_time.hpp"
 #include "motion/tracks/read_track.hpp"

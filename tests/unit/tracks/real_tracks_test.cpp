@@ -2,7 +2,7 @@
 // that Python's csv and xml.etree, and gpsbabel 1.8, find in them.
 #include <gmock/gmock.h>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "flown_route.hpp"
 #include "support/oracle_table.hpp"
 #include "track_reading.hpp"

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/geo/local_frame.hpp"
 #include "stored_zip.hpp"
 #include "track_reading.hpp"

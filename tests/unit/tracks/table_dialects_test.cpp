@@ -1,7 +1,7 @@
 // Tables of other programs: each is recognised, and its units, axes, datum and clock are taken as its maker says.
 #include <gmock/gmock.h>
 
-#include "base/core/text_file.hpp"
+#include "base/core/files.hpp"
 #include "base/geo/local_frame.hpp"
 #include "support/oracle_table.hpp"
 #include "track_reading.hpp"

@@ -1,4 +1,4 @@
-#include "motion/trajectory/arrival_rhythm.hpp"
+#include "motion/trajectory/source_clock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/geo/body_frame.hpp"
+#include "base/geo/attitude.hpp"
 #include "law_track.hpp"
 #include "motion/trajectory/recorded_path.hpp"
 

@@ -1,14 +1,13 @@
 // How a run plays a recorded path: each option is a law that holds at every instant.
-#include "motion/trajectory/playback.hpp"
+#include "motion/trajectory/recorded_path.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "base/geo/body_frame.hpp"
+#include "base/geo/attitude.hpp"
 #include "law_track.hpp"
-#include "motion/trajectory/recorded_path.hpp"
 
 namespace skyloop {
 namespace {

@@ -7,8 +7,6 @@
 #include <optional>
 
 #include "base/geo/local_frame.hpp"
-#include "motion/trajectory/closed_paths.hpp"
-#include "motion/trajectory/flight_profiles.hpp"
 #include "motion/trajectory/generated_path.hpp"
 #include "motion/trajectory/waypoint_plan.hpp"
 

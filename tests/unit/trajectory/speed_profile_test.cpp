@@ -1,5 +1,5 @@
 // S-curves: they end where they should, and keep their limits (FEEDS.md 2.1).
-#include "motion/trajectory/speed_profile.hpp"
+#include "motion/trajectory/vehicle.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The smoother takes noise out of rows and leaves alone what is motion.
-#include "motion/trajectory/track_smoothing.hpp"
+#include "motion/trajectory/track.hpp"
 
 #include <gtest/gtest.h>
 

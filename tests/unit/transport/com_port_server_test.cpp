@@ -1,5 +1,5 @@
 // Octets are those of RFC 854 and RFC 2217, section 2 and 3.
-#include "wire/transport/com_port_server.hpp"
+#include "wire/transport/rfc2217.hpp"
 
 #include <gtest/gtest.h>
 

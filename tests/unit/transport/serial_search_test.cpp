@@ -1,4 +1,4 @@
-#include "wire/transport/serial_search.hpp"
+#include "wire/transport/serial_system.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "wire/usb/bridge_buffers.hpp"
+#include "wire/usb/serial_bridge.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "wire/usb/usb_address.hpp"
+#include "wire/usb/usb_device.hpp"
 
 #include <gtest/gtest.h>
 

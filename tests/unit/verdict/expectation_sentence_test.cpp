@@ -1,5 +1,5 @@
 // The grammar of [[expect]]: every form, and what is said of a wrong one.
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

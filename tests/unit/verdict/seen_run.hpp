@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/geo/local_frame.hpp"
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation.hpp"
 #include "run/verdict/judge.hpp"
 
 namespace skyloop::test {

@@ -1,7 +1,11 @@
 /// A run in real time with a program that is tested.
+/// Which files a vehicle's command is made of.
 #pragma once
 
 #include <atomic>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/core/process.hpp"
 #include "base/core/result.hpp"
@@ -10,6 +14,11 @@
 #include "run/verdict/verdict.hpp"
 
 namespace skyloop {
+
+/// The words of a command for /bin/sh that have a slash and are programs, seen from the working folder: regular files
+/// that may be executed, begin with `#!`, or end in .py, .sh or .lua. Not what it writes, with `>` or by an option as a
+/// log is named: that is another after each run. Nothing is expanded: $HOME/sitl is no file.
+std::vector<std::string> programs_of_command(std::string_view command);
 
 /// Who looks after a vehicle's processes.
 struct VehicleWatch {

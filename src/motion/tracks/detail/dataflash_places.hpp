@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "flight_log.hpp"
-#include "local_maps.hpp"
 #include "receiver/observed/dataflash.hpp"
 
 namespace skyloop {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "flight_log.hpp"
-#include "local_maps.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
 
 namespace skyloop {

@@ -4,11 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "cycle_count.hpp"
 #include "loop_noise.hpp"
 #include "receiver/measurement/correlator_multipath.hpp"
 #include "signal_lock.hpp"
-#include "signal_traits.hpp"
 #include "world/flow/arrivals.hpp"
 #include "world/flow/measurement_terms.hpp"
 #include "world/flow/observations.hpp"

@@ -1,25 +1,46 @@
 /// One led run: what stands behind a handle of skyloop.h.
+/// How a call of the C interface fails.
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "answer.hpp"
+#include "base/core/result.hpp"
 #include "base/geo/local_frame.hpp"
 #include "led_port.hpp"
 #include "motion/trajectory/live_path.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/command_queue.hpp"
-#include "run/emulator/run_summary.hpp"
 #include "run_watcher.hpp"
+#include "skyloop.h"
 #include "world/propagation/told_obstacles.hpp"
 
 namespace skyloop {
+
+/// A status of skyloop.h, never SKY_OK, and a sentence for sky_last_error().
+struct Refusal {
+    sky_status status = SKY_E_INTERNAL;
+    std::string sentence;
+};
+
+template <class T>
+using Answer = tl::expected<T, Refusal>;
+
+inline tl::unexpected<Refusal> refuse(sky_status status, std::string sentence) {
+    return tl::make_unexpected(Refusal{status, std::move(sentence)});
+}
+/// What the program's own functions could not do.
+inline tl::unexpected<Refusal> refuse(const Error& error) {
+    return refuse(error.code == ErrorCode::outside ? SKY_E_IO : SKY_E_PARSE, error.message);
+}
+inline tl::unexpected<Refusal> refuse(Refusal refusal) { return tl::make_unexpected(std::move(refusal)); }
 
 /// A run that its caller leads. The functions are those of skyloop.h; each may fail as it says there. Not for several
 /// threads at once. State: the run, what the caller has said of vehicles and obstacles, and the bytes on their way.

@@ -1,4 +1,5 @@
 /// The files that a recording consists of, and what may happen to those that are in its folder already.
+/// The files that a run reads, in one list for all who must know them.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +8,9 @@
 #include <vector>
 
 #include "base/core/result.hpp"
+#include "run/emulator/data_folders.hpp"
 #include "run/emulator/wires.hpp"
+#include "run/scenario/scenario.hpp"
 
 namespace skyloop {
 
@@ -37,5 +40,19 @@ Result<void> spare_inputs(const SparedFiles& spared_files, const std::filesystem
 /// belongs to its recording. @param folder of the recording; nothing without one
 Result<void> spare_inputs_and_recording(const std::vector<WireEnd>& ends, const SparedFiles& spared_files,
                                         const std::optional<std::filesystem::path>& folder);
+
+/// A file that decides what a run does.
+struct InputFile {
+    std::filesystem::path path;
+    /// Its bytes go into scenario_digest(). Those of others are in it already, with the scenario's text or the scene,
+    /// or are what clients said, which is in none.
+    bool in_digest = true;
+};
+
+/// Every file that the scenario, its options and its receivers name, in an order that is the same each time. Some need
+/// not be there. Files that these name themselves, such as the materials of a mesh, are not among them.
+/// @param repeat a recording whose clients' bytes are heard again
+std::vector<InputFile> input_files(const Scenario& scenario, const DataFolders& data,
+                                   const std::optional<std::filesystem::path>& repeat = std::nullopt);
 
 }  // namespace skyloop

@@ -14,7 +14,6 @@
 #include "base/core/random.hpp"
 #include "base/time/gps_time.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
-#include "run/fault/wire_conditions.hpp"
 #include "run/fault/wire_damage.hpp"
 
 namespace skyloop {

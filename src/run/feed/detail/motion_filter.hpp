@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "motion/trajectory/truth_sample.hpp"
+#include "motion/trajectory/trajectory.hpp"
 
 namespace skyloop {
 

@@ -1,4 +1,5 @@
 /// The keys of each part of a scenario file, and those that board files share.
+/// The keys of each part of a board file (boards/README.md).
 #pragma once
 
 #include <cstdint>
@@ -6,9 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "base/geo/level_frame.hpp"
+#include "base/geo/simulator_frames.hpp"
+#include "firmware/board_profile.hpp"
 #include "run/scenario/scenario.hpp"
-#include "run/scenario/scenario_changes.hpp"
+#include "run/scenario/scenario_file.hpp"
 #include "run/verdict/expectation.hpp"
 #include "table_reader.hpp"
 
@@ -86,5 +88,22 @@ std::optional<LevelFrame> read_frame(TableReader& top);
 std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, KeyText text,
                                                        const TrajectoryContext& context,
                                                        std::vector<std::string>& warnings);
+
+/// All keys of a file's top table.
+void read_board_keys(TableReader& top, firmware::BoardProfile& board);
+
+/// [nmea]
+void read_board_nmea(TableReader& nmea, firmware::BoardProfile& board);
+/// [ubx]
+void read_board_ubx(TableReader& ubx, firmware::BoardProfile& board);
+/// Makes the items of CFG-MSGOUT absent whose message the board does not send: the rate of nothing.
+void leave_out_rates_of_others(firmware::BoardProfile& board);
+/// [config]; reads it after everything that decides what a value may be.
+void read_board_config(TableReader& config, firmware::BoardProfile& board);
+/// `signal_conflicts` of [navigation].
+void read_signal_conflicts(TableReader& navigation, firmware::BoardProfile& board);
+
+/// The bytes that pairs of hexadecimal digits write, blanks among them left aside; nothing for any other text.
+std::optional<Bytes> bytes_of_hex(std::string_view text);
 
 }  // namespace skyloop

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "motion/trajectory/geodesic_plane.hpp"
+#include "motion/trajectory/shaped_path.hpp"
 #include "scenario_keys.hpp"
 
 namespace skyloop {

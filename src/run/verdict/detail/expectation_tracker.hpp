@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "presence_watch.hpp"
 #include "run/verdict/expectation.hpp"
 #include "run/verdict/verdict.hpp"
 #include "subject_view.hpp"

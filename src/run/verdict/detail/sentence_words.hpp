@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "run/verdict/expectation_sentence.hpp"
+#include "run/verdict/expectation.hpp"
 
 namespace skyloop {
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <thread>
 
-#include "wire/usb/bridge_buffers.hpp"
 #include "wire/usb/cdc_acm.hpp"
+#include "wire/usb/serial_bridge.hpp"
 
 namespace skyloop {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "reference_system.hpp"
+#include "place_on_earth.hpp"
 #include "world/city/city_file.hpp"
 
 namespace skyloop {

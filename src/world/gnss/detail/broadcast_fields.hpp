@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "base/core/bit_field.hpp"
+#include "base/core/bytes.hpp"
 #include "base/time/utc_time.hpp"
 
 namespace skyloop::broadcast {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "world/gnss/nequick_tables.hpp"
+#include "world/gnss/nequick_g.hpp"
 
 namespace skyloop {
 

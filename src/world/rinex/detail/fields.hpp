@@ -1,10 +1,12 @@
 /// Lines and fixed-column fields of RINEX text.
+/// What is wrong with records of one kind.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace skyloop::rinex {
@@ -53,5 +55,19 @@ std::optional<int> whole_field(std::string_view field);
 
 /// The text in quotation marks, cut to a readable length, without control characters.
 std::string in_quotes(std::string_view text);
+
+/// The first defect of a kind in words, and how many there are.
+struct DefectTally {
+    std::string first;
+    int count = 0;
+    void add(std::string sentence) {
+        if (count++ == 0) first = std::move(sentence);
+    }
+    /// Many records may fail; only the first needs words.
+    template <class Words>
+    void add_with(Words words) {
+        if (count++ == 0) first = words();
+    }
+};
 
 }  // namespace skyloop::rinex

@@ -1,4 +1,5 @@
 /// One search for paths that are not known yet.
+/// Which satellites stand behind something.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +10,25 @@
 #include "path_refiner.hpp"
 #include "ray_lattice.hpp"
 #include "search_crew.hpp"
-#include "sight_lines.hpp"
 
 namespace skyloop {
+
+/// Straight lines from the antenna to all satellites, asked of the scene at once.
+class SightLines {
+public:
+    /// A satellite, or an antenna, whose position is no number is neither seen nor sought.
+    void look(const UrbanScene& scene, const Eigen::Vector3d& antenna, std::span<const SceneSatellite> satellites);
+    [[nodiscard]] bool seen(std::size_t satellite) const { return blocked_[satellite] == 0; }
+    /// Those whose paths are to be sought, in the satellites' order.
+    void collect_targets(std::span<const SceneSatellite> satellites, bool blocked_only,
+                         std::vector<SearchTarget>& targets) const;
+
+private:
+    std::vector<SceneRay> rays_;  ///< to those with a position
+    std::vector<std::uint32_t> satellite_;
+    std::vector<std::uint8_t> answers_;
+    std::vector<std::uint8_t> blocked_;  ///< by satellite
+};
 
 /// A lattice of rays around the antenna; those that leave the city near a satellite propose the planes that they met,
 /// which are refined to paths. What it finds depends on what it was asked alone, not on the crew that helps.

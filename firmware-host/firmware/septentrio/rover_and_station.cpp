@@ -1,0 +1,210 @@
+#include "firmware/septentrio/rover_and_station.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "base/core/number_text.hpp"
+#include "firmware/messages/field_values.hpp"
+#include "firmware/messages/make_message.hpp"
+#include "firmware/port_id.hpp"
+#include "receiver/protocol/rtcm3.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+bool is_rover_mode(const SeptentrioSettings& settings, std::string_view mode) {
+    return lists(settings.values("PVTMode")[1], mode);
+}
+
+bool allows(const SeptentrioSettings& settings, CorrectionState state) {
+    switch (state) {
+        case CorrectionState::none:
+            return true;
+        case CorrectionState::differential:
+            return is_rover_mode(settings, "DGNSS") || is_rover_mode(settings, "DGPS");
+        case CorrectionState::rtk_float:
+            return is_rover_mode(settings, "RTKFloat") || is_rover_mode(settings, "RTK");
+        case CorrectionState::rtk_fixed:
+            return is_rover_mode(settings, "RTKFixed") || is_rover_mode(settings, "RTK");
+    }
+    return true;
+}
+
+struct NamedSignal {
+    SystemSignal signal;
+    std::string_view name;
+};
+constexpr std::array named_signals{NamedSignal{{Constellation::gps, Signal::l1}, "GPSL1CA"},
+                                   NamedSignal{{Constellation::gps, Signal::l2}, "GPSL2C"},
+                                   NamedSignal{{Constellation::gps, Signal::l5}, "GPSL5"},
+                                   NamedSignal{{Constellation::glonass, Signal::g1}, "GLOL1CA"},
+                                   NamedSignal{{Constellation::glonass, Signal::g2}, "GLOL2CA"},
+                                   NamedSignal{{Constellation::galileo, Signal::l1}, "GALL1BC"},
+                                   NamedSignal{{Constellation::galileo, Signal::l5}, "GALE5a"},
+                                   NamedSignal{{Constellation::galileo, Signal::e5b}, "GALE5b"},
+                                   NamedSignal{{Constellation::sbas, Signal::l1}, "GEOL1"},
+                                   NamedSignal{{Constellation::beidou, Signal::b1i}, "BDSB1I"},
+                                   NamedSignal{{Constellation::beidou, Signal::e5b}, "BDSB2I"},
+                                   NamedSignal{{Constellation::beidou, Signal::b3i}, "BDSB3I"},
+                                   NamedSignal{{Constellation::beidou, Signal::l5}, "BDSB2a"},
+                                   NamedSignal{{Constellation::qzss, Signal::l1}, "QZSL1CA"},
+                                   NamedSignal{{Constellation::qzss, Signal::l2}, "QZSL2C"},
+                                   NamedSignal{{Constellation::qzss, Signal::l5}, "QZSL5"},
+                                   NamedSignal{{Constellation::navic, Signal::l5}, "NAVICL5"}};
+
+}  // namespace
+
+bool lists(std::string_view words, std::string_view word) {
+    const std::vector<std::string> list = split_words(words, '+');
+    return std::any_of(list.begin(), list.end(),
+                       [&](const std::string& one) { return same_word(one, word) || same_word(one, "all"); });
+}
+
+CorrectionState allowed_corrections(const SeptentrioSettings& settings, CorrectionState at_hand) {
+    for (const CorrectionState state :
+         {CorrectionState::rtk_fixed, CorrectionState::rtk_float, CorrectionState::differential})
+        if (state <= at_hand && allows(settings, state)) return state;
+    return CorrectionState::none;
+}
+
+void withhold_forbidden(const SeptentrioSettings& settings, NavigationState& state) {
+    const bool alone = state.epoch.fix.type == FixType::fix_2d || state.epoch.fix.type == FixType::fix_3d;
+    const bool forbidden =
+        alone ? !is_rover_mode(settings, "StandAlone")
+              : state.epoch.fix.type == FixType::rtk_float && !allows(settings, CorrectionState::rtk_float);
+    if (!forbidden) return;
+    state.fix_ok = false;
+    state.kind_forbidden = true;
+}
+
+void tell_given_place(NavigationState& state) {
+    if (state.epoch.fix.type != FixType::time_only) return;
+    state.epoch.fix.type = FixType::fix_3d;
+    state.place_given = true;
+}
+
+std::optional<std::uint64_t> model_of_motion(std::string_view motion) {
+    constexpr std::uint64_t stationary = 2, pedestrian = 3, automotive = 4, airborne_4g = 8;
+    constexpr std::array<std::pair<std::string_view, std::uint64_t>, 9> models{{{"Static", stationary},
+                                                                                {"Quasistatic", stationary},
+                                                                                {"EarthquakeMon", stationary},
+                                                                                {"Pedestrian", pedestrian},
+                                                                                {"Automotive", automotive},
+                                                                                {"HeavyMachinery", automotive},
+                                                                                {"RaceCar", airborne_4g},
+                                                                                {"UAV", airborne_4g},
+                                                                                {"Unlimited", airborne_4g}}};
+    for (const auto& [name, model] : models)
+        if (same_word(name, motion)) return model;
+    return std::nullopt;
+}
+
+std::string_view signal_name(SystemSignal signal) {
+    for (const NamedSignal& named : named_signals)
+        if (named.signal == signal) return named.name;
+    return {};
+}
+
+namespace {
+
+// A message that is made here, and the name under which its interval is set.
+struct StationMessage {
+    std::string_view name, pace;
+    std::uint8_t id;  // in class F5
+};
+constexpr std::uint8_t position_only = 0x05, position_and_height = 0x06;
+constexpr std::array station_messages{
+    StationMessage{"RTCM1005", "RTCM1005|6", position_only},
+    StationMessage{"RTCM1006", "RTCM1005|6", position_and_height},
+    StationMessage{"RTCM1074", "MSM4", 0x4A},
+    StationMessage{"RTCM1077", "MSM7", 0x4D},
+    StationMessage{"RTCM1084", "MSM4", 0x54},
+    StationMessage{"RTCM1087", "MSM7", 0x57},
+    StationMessage{"RTCM1094", "MSM4", 0x5E},
+    StationMessage{"RTCM1097", "MSM7", 0x61},
+    StationMessage{"RTCM1124", "MSM4", 0x7C},
+    StationMessage{"RTCM1127", "MSM7", 0x7F},
+    StationMessage{"RTCM1230", "RTCM1230", 0xE6},
+};
+constexpr std::array<PortId, 3> ports_with_commands{PortId::uart1, PortId::uart2, PortId::usb};
+
+std::uint64_t period_of(const SeptentrioSettings& settings, const StationMessage& message) {
+    const auto seconds = number_in<double>(settings.values("RTCMv3Interval", message.pace).front());
+    return static_cast<std::uint64_t>(std::llround(seconds.value_or(1) * 1e3));
+}
+
+// Those that a port sends, whenever that is.
+std::vector<const StationMessage*> sent_by(const SeptentrioSettings& settings, std::string_view port) {
+    std::vector<const StationMessage*> sent;
+    const auto& wanted = settings.values("RTCMv3Output", port);
+    if (wanted.empty() || !lets_through(settings, port, "RTCMv3")) return sent;
+    for (const StationMessage& message : station_messages)
+        if (lists(wanted.front(), message.name)) sent.push_back(&message);
+    return sent;
+}
+
+// 1006 is 1005 and the height of the antenna's reference point above the marker.
+std::vector<Bytes> with_height(std::vector<Bytes> frames, const SeptentrioSettings& settings) {
+    constexpr double most_m = 6.5535;
+    const double height = number_in<double>(settings.values("AntennaOffset", "Main")[2]).value_or(0);
+    for (Bytes& frame : frames) {
+        auto station = decode_station(*parse_rtcm3(frame));
+        station->antenna_height = static_cast<int>(std::lround(std::clamp(height, 0.0, most_m) * 1e4));
+        frame = encode(*station);
+    }
+    return frames;
+}
+
+}  // namespace
+
+std::vector<Bytes> station_output(const SeptentrioSettings& settings, const ReportContext& context) {
+    const std::uint32_t tow_ms = whole_milliseconds(gps_stamp(context.state.epoch.fix.time));
+    std::vector<UbxMessageId> due;
+    for (const StationMessage* message : sent_by(settings, descriptor_of(context.port)))
+        if (tow_ms % period_of(settings, *message) == 0) due.push_back({class_rtcm, message->id});
+    std::vector<Bytes> frames;
+    for (std::size_t i = 0; i < due.size(); ++i) {
+        ReportContext one = context;
+        one.following = std::span(due).subspan(i + 1);
+        const bool height = due[i].id == position_and_height;
+        auto made = make_rtcm_message(height ? UbxMessageId{class_rtcm, position_only} : due[i], one);
+        if (height) made = with_height(std::move(made), settings);
+        std::move(made.begin(), made.end(), std::back_inserter(frames));
+    }
+    return frames;
+}
+
+std::uint64_t station_period_ms(const SeptentrioSettings& settings) {
+    std::uint64_t common = 0;
+    for (const PortId port : ports_with_commands)
+        for (const StationMessage* message : sent_by(settings, descriptor_of(port)))
+            common = std::gcd(common, period_of(settings, *message));
+    return common;
+}
+
+bool lets_through(const SeptentrioSettings& settings, std::string_view port, std::string_view protocol) {
+    const auto& directions = settings.values("DataInOut", port);
+    if (directions.size() < 2) return true;
+    const auto outputs = split_words(directions[1], '+');
+    return std::any_of(outputs.begin(), outputs.end(), [&](const auto& word) { return same_word(word, protocol); });
+}
+
+std::optional<Position<Ecef>> told_place(const SeptentrioSettings& settings) {
+    const auto& mode = settings.values("PVTMode");
+    if (mode[0] != "Static") return std::nullopt;
+    const bool geodetic = mode[2].starts_with("Geodetic");
+    const auto& place = settings.values(geodetic ? "StaticPosGeodetic" : "StaticPosCartesian", mode[2]);
+    if (place.empty()) return std::nullopt;
+    std::array<double, 3> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        numbers[i] = number_in<double>(place[i]).value_or(0);
+    if (numbers == std::array<double, 3>{}) return std::nullopt;
+    if (geodetic) return to_ecef(Geodetic::degrees(numbers[0], numbers[1], numbers[2]));
+    return Position<Ecef>(numbers[0], numbers[1], numbers[2]);
+}
+
+}  // namespace skyloop::firmware

@@ -1,0 +1,51 @@
+/// What a Septentrio receiver is told of its solution: modes, motion, signals (mosaic-X5 reference guide,
+/// firmware 4.14, chapter 3; PolaRx5TR reference guide, firmware 5.5, setPVTMode and setReceiverDynamics).
+///
+/// What a Septentrio receiver sends to others as their reference station: RTCM 3 (mosaic-X5 reference guide,
+/// firmware 4.14, setRTCMv3Output, setRTCMv3Interval, setRTCMv3Formatting).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "base/core/bytes.hpp"
+#include "base/geo/geodetic.hpp"
+#include "firmware/navigation_state.hpp"
+#include "firmware/septentrio/settings.hpp"
+
+namespace skyloop::firmware {
+
+/// The most of the corrections at hand that PVTMode allows to be used.
+CorrectionState allowed_corrections(const SeptentrioSettings& settings, CorrectionState at_hand);
+
+/// Takes a solution of a kind that PVTMode does not allow for none.
+void withhold_forbidden(const SeptentrioSettings& settings, NavigationState& state);
+
+/// What stands where it was told (PVTMode Static) and solves the time alone has that place for its position.
+void tell_given_place(NavigationState& state);
+
+/// CFG-NAVSPG-DYNMODEL for a motion of ReceiverDynamics; nothing for a word that is not known.
+std::optional<std::uint64_t> model_of_motion(std::string_view motion);
+
+/// A signal's name, such as GPSL2C; empty for one without.
+std::string_view signal_name(SystemSignal signal);
+
+/// Whether a list of words by + has this one, or "all".
+bool lists(std::string_view words, std::string_view word);
+
+/// Messages that are due at an epoch on the port of `context`: 1005 and 1006 of a receiver that was told where it
+/// stands, MSM4, MSM7 and 1230. Others may be asked for and are left out.
+std::vector<Bytes> station_output(const SeptentrioSettings& settings, const ReportContext& context);
+
+/// The longest period, ms, at which each of them that a port sends finds its epochs; 0 when none is sent.
+std::uint64_t station_period_ms(const SeptentrioSettings& settings);
+
+/// Whether a port sends a protocol: "SBF", "NMEA", "RTCMv3".
+bool lets_through(const SeptentrioSettings& settings, std::string_view port, std::string_view protocol);
+
+/// Where it stands, when PVTMode says that it does and the position of which it speaks has been set.
+std::optional<Position<Ecef>> told_place(const SeptentrioSettings& settings);
+
+}  // namespace skyloop::firmware

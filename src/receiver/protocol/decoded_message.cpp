@@ -1,0 +1,270 @@
+#include "receiver/protocol/decoded_message.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "base/core/words.hpp"
+#include "receiver/protocol/field_lister.hpp"
+#include "receiver/protocol/known_sbf.hpp"
+#include "receiver/protocol/mavlink_vehicle.hpp"
+#include "receiver/protocol/msp.hpp"
+
+namespace skyloop {
+namespace {
+
+constexpr std::size_t rtcm3_frame_head = 3, rtcm3_frame_tail = 3;
+
+template <class Message>
+void list_message(const Message& found, DecodedMessage& message) {
+    FieldLister lister(Message::field_names);
+    walk_fields(found, lister);
+    message.fields = lister.take();
+}
+
+void keep_payload(ByteSpan payload, DecodedMessage& message) { message.payload.assign(payload.begin(), payload.end()); }
+
+template <class Message>
+bool list_msp_as(const MspFrameView& frame, DecodedMessage& message) {
+    if (frame.function != Message::function || frame.payload.empty()) return false;
+    const auto found = decode_front<Message>(frame.payload);
+    message.name = Message::message_name;
+    if (found) list_message(*found, message);
+    return found.has_value();
+}
+
+void list_msp(const MspFrameView& frame, DecodedMessage& message) {
+    message.id = frame.version == 1 ? fmt::format("{}", frame.function) : fmt::format("0x{:04X}", frame.function);
+    if (list_msp_as<MspSensorGps>(frame, message) || list_msp_as<MspSetRawGps>(frame, message)) return;
+    keep_payload(frame.payload, message);
+}
+
+// Counts the fields of a message that lie before its extensions.
+class BaseFields {
+public:
+    explicit BaseFields(std::size_t base_size) : left_(base_size) {}
+    template <class... T>
+    void operator()(const T&... field) {
+        (take(wire_size_of(field)), ...);
+    }
+    [[nodiscard]] std::size_t count() const { return count_; }
+
+private:
+    template <class T>
+    static std::size_t wire_size_of(const T& field) {
+        return sizeof field;  // numbers and arrays of them
+    }
+    void take(std::size_t size) {
+        if (left_ == 0) return;
+        left_ -= std::min(size, left_);
+        ++count_;
+    }
+    std::size_t left_, count_ = 0;
+};
+
+// Frames of version 1 have no extensions.
+template <class Message>
+void leave_out_extensions(DecodedMessage& message) {
+    BaseFields base(Message::base_size);
+    const Message any{};
+    walk_fields(any, base);
+    for (std::size_t i = base.count(); i < message.fields.size(); ++i)
+        message.fields[i].value = {};
+}
+
+template <class Message>
+bool list_mavlink_as(const MavlinkFrameView& frame, DecodedMessage& message) {
+    if (frame.message != Message::message_id) return false;
+    message.name = Message::message_name;
+    list_message(decode_mavlink<Message>(frame.payload), message);
+    if (frame.version == 1) leave_out_extensions<Message>(message);
+    return true;
+}
+
+void list_mavlink(const MavlinkFrameView& frame, DecodedMessage& message) {
+    message.id = fmt::format("{}", frame.message);
+    const bool known =
+        KnownMavlinkMessages::any([&]<class Message>() { return list_mavlink_as<Message>(frame, message); });
+    if (!known) return keep_payload(frame.payload, message);
+    const auto number = [](unsigned value) { return DecodedValue{std::uint64_t{value}}; };
+    std::vector<DecodedField> fields{{"system", number(frame.source.system)},
+                                     {"component", number(frame.source.component)},
+                                     {"sequence", number(frame.source.sequence)}};
+    for (DecodedField& field : message.fields)
+        fields.push_back(std::move(field));
+    message.fields = std::move(fields);
+}
+
+template <class Message>
+bool list_sbf_as(const SbfBlockView& block, DecodedMessage& message) {
+    if (block.number != Message::block_number) return false;
+    message.name = Message::message_name;
+    const auto found = decode_sbf<Message>(block.body);
+    if (found) list_message(*found, message);
+    return found.has_value();
+}
+
+void list_sbf(const SbfBlockView& block, DecodedMessage& message) {
+    message.id = fmt::format("{}", block.number);
+    const bool known = KnownSbfBlocks::any([&]<class Message>() { return list_sbf_as<Message>(block, message); });
+    if (!known) keep_payload(block.body, message);
+}
+
+}  // namespace
+
+std::string_view stream_kind_name(StreamKind kind) {
+    constexpr std::array<std::string_view, stream_kind_count> names{"ubx", "nmea",    "rtcm3", "noise",
+                                                                    "msp", "mavlink", "sbf",   "command"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+DecodedMessage decode_piece(const StreamPiece& piece) {
+    DecodedMessage message;
+    message.protocol = stream_kind_name(piece.kind);
+    message.bytes = piece.bytes.size();
+    const ByteSpan bytes(piece.bytes);
+    if (piece.kind == StreamKind::ubx) {
+        if (const auto frame = parse_frame(bytes)) list_ubx(*frame, message);
+    } else if (piece.kind == StreamKind::nmea) {
+        const std::string line = to_string(bytes);
+        const std::string_view trimmed = std::string_view(line).substr(0, line.find_last_not_of("\r\n") + 1);
+        if (const auto sentence = parse_sentence(trimmed)) list_nmea(*sentence, message);
+    } else if (piece.kind == StreamKind::rtcm3) {
+        if (bytes.size() >= rtcm3_frame_head + rtcm3_frame_tail)
+            list_rtcm3(bytes.subspan(rtcm3_frame_head, bytes.size() - rtcm3_frame_head - rtcm3_frame_tail), message);
+    } else if (piece.kind == StreamKind::msp) {
+        if (const auto frame = parse_msp(bytes)) list_msp(*frame, message);
+    } else if (piece.kind == StreamKind::mavlink) {
+        if (const auto frame = parse_mavlink(bytes)) list_mavlink(*frame, message);
+    } else if (piece.kind == StreamKind::sbf) {
+        if (const auto block = parse_sbf(bytes)) list_sbf(*block, message);
+    } else if (piece.kind == StreamKind::command) {
+        message.fields.push_back({"line", {to_string(bytes)}});
+    } else {
+        keep_payload(bytes, message);
+    }
+    return message;
+}
+
+namespace {
+
+std::string hex_of(ByteSpan bytes) {
+    std::string text;
+    text.reserve(2 * bytes.size());
+    for (const std::uint8_t byte : bytes)
+        fmt::format_to(std::back_inserter(text), "{:02x}", byte);
+    return text;
+}
+
+std::string json_number(double value) {
+    if (!std::isfinite(value)) return "null";
+    // JSON has no "-0"; and what is whole is written as whole.
+    if (value == 0) return "0";
+    return fmt::format("{}", value);
+}
+
+std::string json_fields(const std::vector<DecodedField>& fields);
+
+std::string json_list(const std::vector<DecodedValue>& values);
+
+struct JsonValue {
+    std::string operator()(std::monostate) const { return "null"; }
+    std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
+    std::string operator()(std::uint64_t value) const { return fmt::format("{}", value); }
+    std::string operator()(double value) const { return json_number(value); }
+    std::string operator()(const std::string& value) const { return json_string(value); }
+    std::string operator()(const std::vector<DecodedValue>& values) const { return json_list(values); }
+    std::string operator()(const std::vector<DecodedField>& fields) const { return json_fields(fields); }
+};
+
+std::string json_list(const std::vector<DecodedValue>& values) {
+    std::string text = "[";
+    for (const DecodedValue& value : values) {
+        if (text.size() > 1) text += ',';
+        text += std::visit(JsonValue{}, value.content);
+    }
+    return text + ']';
+}
+
+std::string json_fields(const std::vector<DecodedField>& fields) {
+    std::string text = "{";
+    for (const DecodedField& field : fields) {
+        if (text.size() > 1) text += ',';
+        text += json_string(field.name) + ':' + std::visit(JsonValue{}, field.value.content);
+    }
+    return text + '}';
+}
+
+std::string text_fields(const std::vector<DecodedField>& fields);
+
+// Quoted where it could be taken for something else.
+std::string text_word(const std::string& word) {
+    for (const char c : word)
+        if (c <= ' ' || c > '~' || c == '"' || c == '=' || c == '[' || c == '{') return json_string(word);
+    return word.empty() ? "\"\"" : word;
+}
+
+struct TextValue {
+    std::string operator()(std::monostate) const { return "-"; }
+    std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
+    std::string operator()(std::uint64_t value) const { return fmt::format("{}", value); }
+    std::string operator()(double value) const { return std::isfinite(value) ? json_number(value) : "-"; }
+    std::string operator()(const std::string& value) const { return text_word(value); }
+    std::string operator()(const std::vector<DecodedValue>& values) const {
+        std::string text = "[";
+        for (const DecodedValue& value : values) {
+            if (text.size() > 1) text += ' ';
+            text += std::visit(*this, value.content);
+        }
+        return text + ']';
+    }
+    std::string operator()(const std::vector<DecodedField>& fields) const { return '{' + text_fields(fields) + '}'; }
+};
+
+std::string text_fields(const std::vector<DecodedField>& fields) {
+    std::string text;
+    for (const DecodedField& field : fields) {
+        if (!text.empty()) text += ' ';
+        text += field.name + '=' + std::visit(TextValue{}, field.value.content);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string json_string(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            out += {'\\', c};
+        else if (byte < 0x20 || byte > 0x7E)
+            out += fmt::format("\\u{:04x}", byte);
+        else
+            out += c;
+    }
+    return out + '"';
+}
+
+std::string json_line(const DecodedMessage& message, std::uint64_t offset) {
+    std::string text = fmt::format("{{\"protocol\":{},\"offset\":{},\"bytes\":{},\"id\":{}",
+                                   json_string(message.protocol), offset, message.bytes, json_string(message.id));
+    if (!message.name.empty()) text += ",\"name\":" + json_string(message.name);
+    if (!message.fields.empty()) text += ",\"fields\":" + json_fields(message.fields);
+    if (!message.payload.empty()) text += ",\"payload\":\"" + hex_of(message.payload) + '"';
+    return text + '}';
+}
+
+std::string text_line(const DecodedMessage& message) {
+    std::string text = upper_case(message.protocol) + ' ' + (message.name.empty() ? message.id : message.name);
+    if (!message.fields.empty()) text += ' ' + text_fields(message.fields);
+    if (!message.payload.empty()) text += fmt::format(" {} bytes {}", message.payload.size(), hex_of(message.payload));
+    return text;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,112 @@
+#include "receiver/pvt/observation_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "world/gnss/constants.hpp"
+
+namespace skyloop {
+namespace {
+
+// A gap after which nobody can say that no cycle was lost.
+constexpr double longest_phase_gap_s = 5;
+
+}  // namespace
+
+void CodeSmoother::smooth(Observations& observations) {
+    if (window_ <= Seconds(0)) return;
+    if (observations.clock_was_set) signals_.clear();
+    for (Observation& o : observations.signals) {
+        const std::pair key(o.satellite, o.signal);
+        if (!o.pseudorange || !o.carrier_phase) {
+            signals_.erase(key);
+            continue;
+        }
+        const auto known = signals_.find(key);
+        const double dt =
+            known == signals_.end() ? 0 : difference(observations.receive_time, known->second.time).value();
+        if (dt <= 0 || dt > longest_phase_gap_s || o.slipped) {
+            signals_[key] = {observations.receive_time, o.pseudorange->value(), *o.carrier_phase, 1};
+            continue;
+        }
+        Smoothed& s = known->second;
+        const double wavelength = speed_of_light / o.carrier.value();
+        s.count = std::min(s.count + 1, std::max(window_.value() / dt, 1.0));
+        const double carried = s.range + wavelength * (*o.carrier_phase - s.cycles);
+        s.range = carried + (o.pseudorange->value() - carried) / s.count;
+        s.cycles = *o.carrier_phase;
+        s.time = observations.receive_time;
+        o.pseudorange = Metres(s.range);
+    }
+}
+
+namespace {
+
+// Ours: 15 % of code noise and multipath is what is left of them in float solutions of the modern profile.
+constexpr double share_of_code = 0.15;
+constexpr std::size_t least_satellites = 5;
+constexpr Seconds resolving{3};  // of tracking, until an ambiguity is known once others are
+
+bool phase_serves(const Observation& o) {
+    return o.pseudorange && o.carrier_phase && o.correction && o.correction->phase && o.half_cycle_resolved &&
+           o.lock_time >= resolving;
+}
+
+Metres carrier_range(const Observation& o) {
+    return Metres(*o.carrier_phase * speed_of_light / o.carrier.value()) - *o.correction->phase;
+}
+
+}  // namespace
+
+CorrectionState correct(Observations& observations, CorrectionState wanted) {
+    if (wanted == CorrectionState::none) return wanted;
+    std::set<SatelliteId> serving;
+    for (const Observation& o : observations.signals)
+        if (phase_serves(o)) serving.insert(o.satellite);
+    const bool phases = wanted != CorrectionState::differential && serving.size() >= least_satellites;
+    const double of_code = wanted == CorrectionState::rtk_fixed ? 0 : share_of_code;
+    for (Observation& o : observations.signals) {
+        if (!o.pseudorange || !o.correction || (phases && !phase_serves(o))) {
+            o.pseudorange.reset();
+            continue;
+        }
+        o.pseudorange = *o.pseudorange - o.correction->code;
+        if (!phases) continue;
+        const Metres carrier = carrier_range(o);
+        o.pseudorange = carrier + of_code * (*o.pseudorange - carrier);
+    }
+    return phases ? wanted : CorrectionState::differential;
+}
+
+std::optional<RangeEquation> range_equation(TransmitterSource& transmitters, const Observation& first,
+                                            std::span<const Observation* const> others, GpsTime receive_time) {
+    std::optional<Transmitter> t1 = transmitters.at(first.satellite, first.signal, receive_time, *first.pseudorange);
+    if (!t1) return std::nullopt;
+    t1->healthy = t1->healthy && !first.called_unhealthy;
+    RangeEquation e{first.satellite, *t1, *first.pseudorange, first.carrier, first.pseudorange_deviation, false};
+    const Observation* second = nullptr;
+    std::optional<Transmitter> t2;
+    for (std::size_t i = 0; i < others.size() && !t2; ++i) {
+        second = others[i];
+        if (second->carrier == first.carrier) continue;
+        t2 = transmitters.at(second->satellite, second->signal, receive_time, *second->pseudorange);
+    }
+    if (!t2) return e;
+    const double ratio = first.carrier.value() / second->carrier.value();
+    const double b = -1 / (ratio * ratio - 1);
+    const double a = 1 - b;
+    const double c = speed_of_light;
+    e.pseudorange = a * *first.pseudorange + b * *second->pseudorange;
+    const Seconds clock = a * t1->clock_bias + b * t2->clock_bias;
+    // The first signal left later than its pseudorange says, by the delay that the combination takes out.
+    const Seconds delay((*first.pseudorange - e.pseudorange).value() / c + (t1->clock_bias - clock).value());
+    e.transmitter = moved(*t1, delay);
+    e.transmitter.clock_bias = clock;
+    e.carrier = Hertz(0);
+    e.deviation =
+        Metres(std::hypot(a * first.pseudorange_deviation.value(), b * second->pseudorange_deviation.value()));
+    return e;
+}
+
+}  // namespace skyloop

@@ -1,0 +1,34 @@
+/// JSON as this folder writes it.
+/// Values and tables of parameters as JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/result.hpp"
+#include "run/fault/command.hpp"
+#include "run/fault/parameters.hpp"
+
+namespace skyloop {
+
+/// Members stay in the order in which they are set.
+using Json = nlohmann::ordered_json;
+
+/// One line; bytes that are no UTF-8 become replacement characters, numbers that are none null.
+inline std::string json_text(const Json& value) {
+    return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+/// The members of the one object that `text` is. Fails with `input` for anything else, for members that stand there
+/// twice, and for values that no parameter takes.
+Result<ParameterMap> parameters_from_json(std::string_view text);
+
+Json to_json(const ParameterValue& value);
+Json to_json(const ParameterSpec& spec);
+/// The JSON Schema of a parameter.
+Json schema_of(const ParameterSpec& spec);
+
+}  // namespace skyloop

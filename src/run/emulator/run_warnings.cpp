@@ -1,0 +1,229 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string_view>
+
+#include "base/geo/frames.hpp"
+#include "detail/run_warnings.hpp"
+#include "firmware/state_tracker.hpp"
+#include "run/fault/fault_kind.hpp"
+
+namespace skyloop {
+namespace {
+
+using AtmosphereKeys = std::span<const std::string_view>;
+
+// Of [atmosphere]: what weakens signals as it passes by, what delays them, and the noise that all C/N0 is over.
+constexpr std::string_view cloud_and_rain_keys[] = {"cloud", "rain_mm_h", "rain_top_m"};
+constexpr std::string_view delay_keys[] = {
+    "tec_source",        "tec_maps", "total_electron_content_tecu", "zenith_dry_delay_m", "zenith_dry_decay_per_m",
+    "zenith_wet_delay_m"};
+constexpr std::string_view environment_keys[] = {"environment", "environment_noise_db"};
+
+// What a model but the baseline takes of [atmosphere]; that takes all.
+struct TakenOfAtmosphere {
+    std::vector<AtmosphereKeys> keys;
+    std::string_view words;
+
+    [[nodiscard]] bool has(std::string_view key) const {
+        return std::any_of(keys.begin(), keys.end(),
+                           [&](AtmosphereKeys some) { return std::find(some.begin(), some.end(), key) != some.end(); });
+    }
+};
+
+TakenOfAtmosphere taken_of_atmosphere(const ModelSettings& model) {
+    if (!model.sensor_model)
+        return {{cloud_and_rain_keys}, "clouds and rain from [atmosphere] and the rest from [model.modern]"};
+    if (*model.sensor_model == ErrorModelKind::whole_path)
+        return {{delay_keys, environment_keys}, "electron content, zenith delays and environment from [atmosphere]"};
+    return {{environment_keys}, "the environment alone from [atmosphere]"};
+}
+
+void warn_of_idle_keys(const Scenario& scenario, std::vector<std::string>& warnings) {
+    if (scenario.model.sensor_model == ErrorModelKind::baseline) return;
+    const TakenOfAtmosphere taken = taken_of_atmosphere(scenario.model);
+    std::vector<std::string> idle = scenario.atmosphere_keys;
+    std::erase_if(idle, [&](const std::string& key) { return taken.has(key); });
+    if (!idle.empty())
+        warnings.push_back(fmt::format("atmosphere.{}: without effect in {}, which takes {}",
+                                       fmt::join(idle, ", atmosphere."), model_name(scenario.model), taken.words));
+}
+
+// The antenna's height as the model of the air takes it, and what it counts from.
+struct WeatherHeight {
+    Metres height;
+    std::string_view above;
+};
+
+// MODELS.md 3.6 has one sphere for the shells and the antenna; only D-03 asks for the geoid.
+WeatherHeight weather_height(const Scenario& scenario, const Geodetic& place, const Geoid* geoid) {
+    if (scenario.model.sensor_model) return {place.height.above_ellipsoid, "above the ellipsoid"};
+    const Metres undulation = geoid != nullptr ? geoid->undulation(place.latitude, place.longitude) : Metres(0);
+    return {above_sea_level(place.height, undulation).above_sea_level, "above the sea"};
+}
+
+// Weather whose upper end is known to lie below the antenna.
+void warn_of_weather_below(const Scenario& scenario, const Geoid* geoid, std::vector<std::string>& warnings) {
+    const auto* fixed = std::get_if<FixedSettings>(&scenario.trajectory);
+    const auto& sensor_model = scenario.model.sensor_model;
+    const bool weather_acts = !sensor_model || *sensor_model == ErrorModelKind::baseline;
+    if (fixed == nullptr || !weather_acts) return;
+    const auto [height, above] = weather_height(scenario, fixed->at, geoid);
+    const Rain& rain = scenario.atmosphere.rain;
+    if (rain.rate_mm_h > 0 && height >= rain.top)
+        warnings.push_back(
+            fmt::format("atmosphere.rain_top_m: rain falls from {:g} m {}, below the antenna at {:.0f} m, and weakens "
+                        "nothing there",
+                        rain.top.value(), above, height.value()));
+    for (const CloudDeck& deck : scenario.atmosphere.clouds)
+        if (height >= deck.top)
+            warnings.push_back(
+                fmt::format("atmosphere.cloud: {} ends {:g} m {}, below the antenna at {:.0f} m, and weakens nothing "
+                            "there",
+                            deck.kind, deck.top.value(), above, height.value()));
+}
+
+}  // namespace
+
+std::vector<std::string> weather_warnings(const Scenario& scenario, const Geoid* geoid) {
+    std::vector<std::string> warnings;
+    warn_of_idle_keys(scenario, warnings);
+    warn_of_weather_below(scenario, geoid, warnings);
+    return warnings;
+}
+
+namespace {
+
+struct RunOfFaults {
+    const Scenario& scenario;
+    const NavigationSource& navigation;
+    std::span<const Station> stations;
+    bool virtual_time = false;
+};
+
+bool model_has_ionosphere(const ModelSettings& model) {
+    return !model.sensor_model || model.sensor_model == ErrorModelKind::baseline ||
+           model.sensor_model == ErrorModelKind::whole_path;
+}
+
+// Sensor models know the first signal of each system, whatever the receiver tracks.
+bool meets(const FaultEntry& fault, const SatelliteId satellite, const Station& station, bool sensor_model) {
+    const Constellation system = satellite.constellation;
+    if (sensor_model) return is_for(fault.parameters, satellite, first_signal(system));
+    const ReceiverSettings& settings = station.receiver().settings();
+    const auto signals = emulated_signals(system);
+    return std::any_of(signals.begin(), signals.end(), [&](Signal signal) {
+        return settings.tracks(system, signal) && is_for(fault.parameters, satellite, signal);
+    });
+}
+
+bool meets_any(const FaultEntry& fault, const RunOfFaults& run) {
+    const std::vector<SatelliteId> satellites = run.navigation.satellites();
+    const bool sensor_model = run.scenario.model.sensor_model.has_value();
+    return std::any_of(fault.receivers.begin(), fault.receivers.end(), [&](std::size_t receiver) {
+        return std::any_of(satellites.begin(), satellites.end(), [&](SatelliteId satellite) {
+            return meets(fault, satellite, run.stations[receiver], sensor_model);
+        });
+    });
+}
+
+bool has_pair(const FaultEntry& fault, const Scenario& scenario) {
+    return std::any_of(fault.receivers.begin(), fault.receivers.end(),
+                       [&](std::size_t receiver) { return scenario.receivers.at(receiver).base.has_value(); });
+}
+
+bool is_live_only(const Command& command) {
+    const CommandKind* kind = find_command_kind(command_name(command.verb));
+    return kind != nullptr && kind->live_only;
+}
+
+// Why nothing will be seen of a fault; empty: something will.
+std::string why_idle(const FaultEntry& fault, const RunOfFaults& run) {
+    const ModelSettings& model = run.scenario.model;
+    if (fault.kind == "clock_drift" && run.virtual_time)
+        return "skyloop run shows it, against the clock; in virtual time nothing does";
+    if ((fault.kind == "heading_lost" || fault.kind == "heading_flipped") && !has_pair(fault, run.scenario))
+        return "its receiver has no base antenna; expected 'base' of a [[receiver]]";
+    if (fault.kind == "multipath_burst" && !model.sensor_model && !model.modern.errors)
+        return "errors = \"none\" leaves echoes out";
+    if (fault.kind == "ionospheric_storm" && !model_has_ionosphere(model))
+        return fmt::format("model.name = \"{}\" has no ionosphere", model_name(model));
+    if (!meets_any(fault, run)) return "no receiver tracks what it is for, as the run starts";
+    return {};
+}
+
+}  // namespace
+
+std::vector<std::string> idle_fault_warnings(const Scenario& scenario, const NavigationSource& navigation,
+                                             std::span<const Station> stations, bool virtual_time) {
+    std::vector<std::string> warnings;
+    for (const FaultEntry& fault : scenario.faults)
+        if (const std::string why = why_idle(fault, {scenario, navigation, stations, virtual_time}); !why.empty())
+            warnings.push_back(fmt::format("[[fault]] '{}' will show nothing: {}", fault.when.name, why));
+    for (const CommandEntry& command : scenario.commands)
+        if (virtual_time && command.command.source == "scenario" && is_live_only(command.command))
+            warnings.push_back(
+                fmt::format("[[command]] '{}' will do nothing: skyloop run does it, against the clock; in virtual time "
+                            "nothing does",
+                            command.when.name));
+    return warnings;
+}
+
+namespace {
+
+constexpr double longest_look_s = 3600;
+
+// What a receiver without errors believes.
+Fix fix_of(const TruthState& truth, const Geoid* geoid) {
+    Fix fix;
+    fix.position = truth.geodetic;
+    if (geoid != nullptr) fix.geoid_undulation = geoid->undulation(truth.geodetic.latitude, truth.geodetic.longitude);
+    const Eigen::Vector3d enu = LocalFrame(truth.geodetic).to_enu(truth.velocity).vector();
+    fix.velocity = {enu.y(), enu.x(), -enu.z()};
+    fix.speed = MetresPerSecond(std::hypot(enu.x(), enu.y()));
+    return fix;
+}
+
+std::string which_limit(const firmware::BoardProfile& board, std::uint64_t model, const Fix& fix) {
+    firmware::BoardProfile of_all = board;
+    of_all.export_limits = firmware::ExportLimits::off;
+    if (firmware::within_limits(of_all, model, fix)) return "its export_limits";
+    of_all.dynamic_limits = false;
+    return firmware::within_limits(of_all, model, fix) ? "the limits of its dynamic_model"
+                                                       : "500 m/s, from which on no receiver does";
+}
+
+}  // namespace
+
+std::optional<std::string> limit_warning(const PathUnderLimits& path) {
+    const TrajectorySettings& way = trajectory_of(path.scenario, path.receiver);
+    if (std::holds_alternative<LiveSettings>(way)) return std::nullopt;
+    const auto vehicle = make_trajectory(way, path.start);
+    const bool moves = !std::holds_alternative<FixedSettings>(way);
+    const double run = path.end ? difference(*path.end, path.start).value() : longest_look_s;
+    const double step = std::max(1.0, run / longest_look_s);
+    const auto looks = moves ? static_cast<int>(run / step) + 1 : 1;
+    const std::uint64_t model = firmware::dynamic_model_number(path.dynamic_model);
+    std::optional<std::pair<double, Fix>> first;
+    int beyond = 0;
+    for (int i = 0; i < looks; ++i) {
+        const Fix fix = fix_of(vehicle->at(advanced(path.start, Seconds(i * step))), path.geoid);
+        if (firmware::within_limits(path.board, model, fix)) continue;
+        if (!first) first = {i * step, fix};
+        ++beyond;
+    }
+    if (!first) return std::nullopt;
+    const Fix& fix = first->second;
+    const double height = above_sea_level(fix.position.height, fix.geoid_undulation).above_sea_level.value();
+    const std::string how_long =
+        beyond == looks ? "in the whole run"
+                        : fmt::format("in {:.2g} % of the run, from {:.0f} s on", 100.0 * beyond / looks, first->first);
+    return fmt::format("{} tells no fix {}: {:.0f} m above the sea at {:.0f} m/s is beyond {}", path.board.name,
+                       how_long, height, std::hypot(fix.speed.value(), fix.velocity.down),
+                       which_limit(path.board, model, fix));
+}
+
+}  // namespace skyloop

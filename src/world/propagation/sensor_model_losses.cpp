@@ -1,0 +1,112 @@
+#include "world/propagation/sensor_model_losses.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "world/propagation/ray_geometry.hpp"
+
+namespace skyloop {
+namespace {
+
+template <class Shells>
+Decibels loss_through(const Shells& shells, const SphericalRay& ray) {
+    Decibels loss;
+    for (const auto& shell : shells)
+        loss += loss_over(shell.attenuation, shell_path(ray, shell.base, shell.top));
+    return loss;
+}
+
+}  // namespace
+
+LayeredAtmosphereLoss::LayeredAtmosphereLoss(AtmosphereParameters atmosphere, Hertz carrier)
+    : atmosphere_(std::move(atmosphere)), carrier_(carrier) {
+    if (atmosphere_.layers.empty()) atmosphere_.layers = default_layers();
+}
+
+std::vector<LayeredAtmosphereLoss::Shell> LayeredAtmosphereLoss::air_above(Metres antenna_height) const {
+    std::vector<Shell> shells;
+    for (AtmosphericLayer layer : atmosphere_.layers) {
+        layer.base = std::max(layer.base, antenna_height);
+        if (!layer.enabled || layer.top <= layer.base) continue;
+        const double k = layer_concentration(layer, atmosphere_);
+        shells.push_back({layer.base, layer.top,
+                          oxygen_attenuation(carrier_, k, atmosphere_.oxygen_constant) +
+                              vapour_attenuation(carrier_, layer.vapour_g_m3, k)});
+    }
+    return shells;
+}
+
+std::vector<LayeredAtmosphereLoss::Shell> LayeredAtmosphereLoss::clouds_above(Metres antenna_height) const {
+    std::vector<Shell> shells;
+    for (const CloudDeck& deck : atmosphere_.clouds) {
+        const AtmosphericLayer part{deck.kind, std::max(deck.base, antenna_height), deck.top};
+        if (part.top <= part.base) continue;
+        // A cloud's density is already that of its height (MODELS.md D-13).
+        const double k = atmosphere_.clouds_apply_concentration ? layer_concentration(part, atmosphere_) : 1.0;
+        shells.push_back({part.base, part.top, vapour_attenuation(carrier_, deck.density_g_m3, k)});
+    }
+    return shells;
+}
+
+void LayeredAtmosphereLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
+    assert(arrivals.satellites.size() == sky.satellites.size());
+    const Metres height = truth.geodetic.height.above_ellipsoid;
+    const auto air = air_above(height);
+    const auto clouds = clouds_above(height);
+    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
+        const SphericalRay ray{sky.satellites[i].elevation, height, atmosphere_.earth_radius};
+        Arrival& arrival = arrivals.satellites[i];
+        arrival.gas_loss = loss_through(air, ray);
+        arrival.cloud_loss = loss_through(clouds, ray);
+        arrival.rain_loss = loss_over(rain_attenuation(atmosphere_.rain, carrier_, ray.elevation),
+                                      path_to_height(ray, atmosphere_.rain.top));
+        const Angle there = elevation_at_height(ray, atmosphere_.ionosphere_base);
+        arrival.iono_loss = ionosphere_absorption(atmosphere_, carrier_, there);
+    }
+}
+
+Decibels ionosphere_absorption(const AtmosphereParameters& atmosphere, Hertz carrier, Angle elevation_there) {
+    Decibels loss = atmosphere.ionosphere_loss;
+    if (atmosphere.riometer_absorption_30mhz.value() == 0) return loss;
+    const double ratio = 30e6 / carrier.value();
+    loss += atmosphere.riometer_absorption_30mhz * (ratio * ratio / std::sin(elevation_there.rad()));
+    return loss;
+}
+
+Decibels whole_path_loss(const WholePathParameters& p, Angle elevation) {
+    const double zenith =
+        p.oxygen_db_per_km * p.oxygen_height_km + p.vapour_db_per_km_per_g_m3 * p.vapour_g_m3 * p.vapour_height_km;
+    return Decibels(zenith / std::sin(above_horizon(elevation).rad()));
+}
+
+void WholePathLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& /*truth*/) {
+    assert(arrivals.satellites.size() == sky.satellites.size());
+    for (std::size_t i = 0; i < sky.satellites.size(); ++i)
+        arrivals.satellites[i].gas_loss = whole_path_loss(parameters_, sky.satellites[i].elevation);
+}
+
+DecibelWatts received_power(const Arrival& arrival, const LinkBudgetParameters& link) {
+    const double unobstructed = link.power_mode == PowerMode::eirp
+                                    ? link.satellite_power.value() - arrival.free_space_loss.value()
+                                    : link.specified_received_power.value();
+    const Decibels losses =
+        arrival.gas_loss + arrival.iono_loss + arrival.cloud_loss + arrival.rain_loss + arrival.reflection_loss;
+    return DecibelWatts(unobstructed - losses.value());
+}
+
+LinkBudget::LinkBudget(const LinkBudgetParameters& link, Decibels environment_noise)
+    : link_(link), environment_noise_(environment_noise) {}
+
+double LinkBudget::noise_density_dbw_hz() const { return link_.thermal_noise_dbw_hz + environment_noise_.value(); }
+
+void LinkBudget::apply(Arrivals& arrivals, const SkyView& /*sky*/, const TruthState& /*truth*/) {
+    for (Arrival& arrival : arrivals.satellites) {
+        arrival.reflection_loss = link_.reflection_loss * arrival.reflections;
+        arrival.cn0.reset();
+        if (arrival.paths > 0) arrival.cn0 = DbHz(received_power(arrival, link_).value() - noise_density_dbw_hz());
+    }
+}
+
+}  // namespace skyloop
