@@ -14,7 +14,7 @@
 
 #include "base/core/words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 constexpr std::size_t unpacked_block = std::size_t{1} << 16;
@@ -249,4 +249,4 @@ Result<std::string> unpacked(std::string bytes, const std::string& name, std::si
     return unpacked_at(1, std::move(bytes), name, max_size);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -10,7 +10,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// How often one thing may be packed into another.
 inline constexpr int deepest_packing = 4;
@@ -51,4 +51,4 @@ Result<ArchiveFiles> archive_files(
 /// archive that it is. Fails as the above do, and with `input` when an archive holds no file, or several.
 Result<std::string> unpacked(std::string bytes, const std::string& name, std::size_t max_size);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 using Bytes = std::vector<std::uint8_t>;
 using ByteSpan = std::span<const std::uint8_t>;
@@ -164,4 +164,4 @@ struct SerialFormat {
     }
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

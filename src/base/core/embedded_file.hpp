@@ -4,11 +4,11 @@
 #include <span>
 #include <string_view>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 struct EmbeddedFile {
     std::string_view name;
     std::string_view content;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

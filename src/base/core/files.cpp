@@ -14,7 +14,7 @@
 #include "base/core/archive.hpp"
 #include "base/core/threads.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 constexpr std::size_t most_packing_adds = std::size_t{1} << 20;
@@ -164,4 +164,4 @@ Result<void> check_spares(std::string_view writer, const std::filesystem::path& 
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

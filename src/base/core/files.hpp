@@ -12,7 +12,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Bytes after decompression beyond which a text file is refused.
 inline constexpr std::size_t max_text_file_size = std::size_t{256} << 20;
@@ -46,4 +46,4 @@ Result<bool> make_folder(const std::filesystem::path& folder);
 Result<void> check_spares(std::string_view writer, const std::filesystem::path& out,
                           const std::vector<std::filesystem::path>& inputs);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

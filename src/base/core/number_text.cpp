@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 constexpr std::array<double, 10> powers_of_ten{1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
@@ -80,4 +80,4 @@ void append_padded(std::string& text, int value, int characters) {
     text.append(first, end);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// The number that a text is as a whole; nothing for an empty text, for one with anything before or behind the number,
 /// a plus sign among it, and for a number that the type does not hold. Of floating point numbers infinities and NaN are
@@ -49,4 +49,4 @@ void append_fixed(std::string& text, double value, int decimals);
 /// Appends `value` with zeros before it up to so many characters, its sign among them, as fmt's "{:0{}}" does.
 void append_padded(std::string& text, int value, int characters);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

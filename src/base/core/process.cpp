@@ -14,7 +14,7 @@
 #include <csignal>
 #include <cstring>
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 using ProcessClock = std::chrono::steady_clock;  // the program lives by the host's time
@@ -223,4 +223,4 @@ Result<ProcessOutcome> run_process(const ProcessRequest& request) {
     return process.wait();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -10,7 +10,7 @@
 #include "base/core/result.hpp"
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Hears the number of a process group when it has begun; nothing once it has been killed, before the number can become
 /// another's.
@@ -43,4 +43,4 @@ struct ProcessOutcome {
 /// with `outside` when the program cannot be started.
 Result<ProcessOutcome> run_process(const ProcessRequest& request);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -5,7 +5,7 @@
 
 #include "base/core/bytes.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 // SplitMix64 (Steele, Lea and Flood, 2014): spreads a seed over the whole state.
@@ -76,4 +76,4 @@ double GaussMarkov::advance(Seconds dt) {
     return value_;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

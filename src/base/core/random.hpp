@@ -10,7 +10,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// A seeded stream of random numbers. bits() and uniform() are the same on every platform and build; normal() is as
 /// far as the C library's log() is, which may differ in its last bit.
@@ -81,4 +81,4 @@ struct ErrorTerm {
     }
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -5,7 +5,7 @@
 #include <tl/expected.hpp>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// What a caller can act on.
 enum class ErrorCode {
@@ -31,4 +31,4 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string message) {
 /// Passes an error on to a Result of another type.
 inline tl::unexpected<Error> fail(Error error) { return tl::make_unexpected(std::move(error)); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

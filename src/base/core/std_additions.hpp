@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Takes what any of its parts takes: Overloaded{[](int) { … }, [](double) { … }}.
 template <class... Cases>
@@ -51,4 +51,4 @@ private:
     std::size_t size_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -8,7 +8,7 @@
 
 #include "base/core/words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 // Of the first cell; npos: it is the last one.
@@ -156,4 +156,4 @@ std::optional<double> unit_scale(std::string_view unit, Measured measured) {
     return known == column_units.end() ? std::nullopt : std::optional(known->scale);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 using LineCells = std::vector<std::string_view>;
 
@@ -55,4 +55,4 @@ ColumnName column_name(std::string_view text);
 /// not known, or of something else. Dates and times of day have the one unit "utc".
 std::optional<double> unit_scale(std::string_view unit, Measured measured);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -4,7 +4,7 @@
 #include <ctime>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 std::int64_t steady_clock_ns() {
     timespec now{};
@@ -64,4 +64,4 @@ void JobThread::work() {
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <thread>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Of the clock that deadlines are slept to (CLOCK_MONOTONIC), ns.
 std::int64_t steady_clock_ns();
@@ -47,4 +47,4 @@ private:
     std::thread thread_;  // last: it uses all of them
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

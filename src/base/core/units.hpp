@@ -5,7 +5,7 @@
 #include <compare>
 #include <numbers>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// A number with a unit. Quantities of one unit add, subtract, compare and scale; different units refuse each other.
 template <class Unit>
@@ -63,4 +63,4 @@ private:
     double radians_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -16,7 +16,7 @@
 #include <map>
 #include <thread>
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 constexpr int watchdog_socket = 3;
@@ -117,4 +117,4 @@ ProcessGroupListener OrphanWatchdog::listener() {
     };
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

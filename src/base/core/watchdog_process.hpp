@@ -11,7 +11,7 @@
 #include "base/core/process.hpp"
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// The program's end of a socket to a process that outlives it, and takes no signal which ends programs in order.
 /// State: both.
@@ -58,4 +58,4 @@ private:
     std::atomic<std::int32_t> listeners_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

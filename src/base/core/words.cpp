@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 std::string on_a_terminal(std::string_view text) {
     std::string shown;
@@ -103,4 +103,4 @@ std::string shell_quoted(const std::vector<std::string>& words) {
     return out;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

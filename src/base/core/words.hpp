@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 constexpr char lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 constexpr char upper_case(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
@@ -72,4 +72,4 @@ std::string shell_quoted_path(std::string_view path);
 /// A command of words that a shell reads back as they were.
 std::string shell_quoted(const std::vector<std::string>& words);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

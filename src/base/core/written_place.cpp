@@ -9,7 +9,7 @@
 
 #include "base/core/words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 constexpr std::string_view place_blanks = " \t";
@@ -232,4 +232,4 @@ std::vector<std::string> HemisphereColumns::notes(std::vector<std::string> unuse
     return notes;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -14,7 +14,7 @@
 
 #include "base/core/table_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Which of the two a number is; the place of each in a pair of them.
 enum class Coordinate : std::size_t { latitude, longitude };
@@ -68,4 +68,4 @@ private:
     bool found_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 Attitude Attitude::roll_pitch_yaw(Angle roll, Angle pitch, Angle yaw) {
     return Attitude(Eigen::AngleAxisd(yaw.rad(), Eigen::Vector3d::UnitZ()) *
@@ -35,4 +35,4 @@ Eigen::Quaterniond ned_to_ecef(const Geodetic& place) {
     return turned * tipped;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -7,7 +7,7 @@
 #include "base/core/units.hpp"
 #include "base/geo/geodetic.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// The turn from the axes of a body (forward, right, down) to north, east, down at its place: the field's yaw, pitch
 /// and roll, in this order (z, y', x'').
@@ -40,4 +40,4 @@ inline Attitude attitude_at(const Geodetic& place, const Eigen::Quaterniond& bod
     return Attitude(ned_to_ecef(place).conjugate() * body_to_ecef);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

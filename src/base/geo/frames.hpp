@@ -5,7 +5,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Earth-centred, Earth-fixed, WGS-84; metres.
 struct Ecef {};
@@ -66,4 +66,4 @@ private:
     Eigen::Vector3d vector_ = Eigen::Vector3d::Zero();
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 Geodetic Geodetic::degrees(double latitude, double longitude, double height_m) {
     return {Angle::degrees(latitude), Angle::degrees(longitude), {Metres(height_m)}};
@@ -69,4 +69,4 @@ GeodesicLeg geodesic_between(const Geodetic& from, const Geodetic& to) {
     return {Metres(length), Angle::degrees(azimuth)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -9,7 +9,7 @@
 #include "base/core/units.hpp"
 #include "base/geo/frames.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Height above the WGS-84 ellipsoid.
 struct EllipsoidalHeight {
@@ -71,4 +71,4 @@ struct GeodesicLeg {
 };
 GeodesicLeg geodesic_between(const Geodetic& from, const Geodetic& to);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 Geoid::Geoid(std::unique_ptr<GeographicLib::Geoid> grid) : grid_(std::move(grid)) {}
 Geoid::Geoid(Geoid&&) noexcept = default;
@@ -41,4 +41,4 @@ Metres Geoid::undulation(Angle latitude, Angle longitude) const {
     return Metres((*grid_)(latitude.deg(), longitude.deg()));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

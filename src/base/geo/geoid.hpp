@@ -11,7 +11,7 @@ namespace GeographicLib {
 class Geoid;
 }
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Geoid undulations on the 15-minute EGM96 grid, cubic interpolation (GeographicLib::Geoid).
 class Geoid {
@@ -32,4 +32,4 @@ private:
     std::unique_ptr<GeographicLib::Geoid> grid_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

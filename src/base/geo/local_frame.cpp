@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 LocalFrame::LocalFrame(const Geodetic& origin) : origin_(origin), origin_ecef_(skyloop::to_ecef(origin)) {
     const double sin_lat = std::sin(origin.latitude.rad());
@@ -49,4 +49,4 @@ LookAngles LocalFrame::look_angles(const Position<Ecef>& target) const {
     return {Angle::radians(azimuth), Angle::radians(std::atan2(enu.z(), horizontal)), Metres(enu.norm())};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

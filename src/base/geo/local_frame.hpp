@@ -6,7 +6,7 @@
 #include "base/geo/frames.hpp"
 #include "base/geo/geodetic.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Where something stands in the sky.
 struct LookAngles {
@@ -36,4 +36,4 @@ private:
     Eigen::Matrix3d rotation_;  ///< rows east, north, up: ECEF to ENU
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

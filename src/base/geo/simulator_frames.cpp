@@ -7,7 +7,7 @@
 
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 LevelFrame::LevelFrame(const LevelPlacement& placement) : placement_(placement), local_(placement.origin) {
     const double s = std::sin(placement.yaw.rad());
@@ -93,4 +93,4 @@ Eigen::Matrix3d axes_on_map(LocalMap map, const Geodetic& origin, const Geodetic
     return ned_to_ecef(map == LocalMap::tangent ? origin : place).toRotationMatrix();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -11,7 +11,7 @@
 #include "base/geo/geodetic.hpp"
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// Cartesian coordinates of a game level, in the level's own unit.
 struct Level {};
@@ -67,4 +67,4 @@ Geodetic place_on_map(LocalMap map, const Geodetic& origin, const Eigen::Vector3
 /// origin, of the other maps, which follow the Earth's curve, those of the place itself.
 Eigen::Matrix3d axes_on_map(LocalMap map, const Geodetic& origin, const Geodetic& place);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

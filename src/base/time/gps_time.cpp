@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 using namespace std::chrono_literals;
@@ -52,4 +52,4 @@ WeekAndTow gst_week_and_tow(GpsTime time) {
     return value;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

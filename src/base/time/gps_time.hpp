@@ -6,7 +6,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// GPS time (GPST), continuous since 1980-01-06T00:00:00 UTC.
 struct GpsClock {
@@ -64,4 +64,4 @@ WeekAndTow bdt_week_and_tow(GpsTime time);
 /// Galileo system time, equal to GPST to nanoseconds; its week 0 is GPS week 1024.
 WeekAndTow gst_week_and_tow(GpsTime time);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

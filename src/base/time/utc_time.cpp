@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline base {
 namespace {
 
 using namespace std::chrono_literals;
@@ -288,4 +288,4 @@ std::optional<std::int64_t> week_of_date(const UtcTime& date, Nanoseconds tow) {
     return week_and_tow(to_gps_time(date, LeapSeconds::announced()) - tow + half).week;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -12,7 +12,7 @@
 #include "base/core/result.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline base {
 
 /// A UTC instant as a calendar and a clock read it; second 60 is a leap second. It does not subtract from GpsTime.
 struct UtcTime {
@@ -97,4 +97,4 @@ std::string format_utc(const UtcTime& utc, int decimals = 3);
 /// later; nothing for what is no calendar time. @param tow of GPS, within a week
 std::optional<std::int64_t> week_of_date(const UtcTime& date, Nanoseconds tow);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline base

@@ -12,7 +12,7 @@
 #include "campaigns/campaign/campaign_folder.hpp"
 #include "campaigns/campaign/shard_results.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // The layout that readers rely on.
@@ -258,4 +258,4 @@ Result<GatheredCounts> gather_campaign(const std::filesystem::path& folder) {
     return counts;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

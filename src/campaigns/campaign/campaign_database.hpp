@@ -9,7 +9,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// What was found while gathering.
 struct GatheredCounts {
@@ -28,4 +28,4 @@ struct GatheredCounts {
 /// Fails with `input` where a run has two results that differ, naming both places.
 Result<GatheredCounts> gather_campaign(const std::filesystem::path& folder);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

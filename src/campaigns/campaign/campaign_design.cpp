@@ -12,7 +12,7 @@
 #include "base/core/random.hpp"
 #include "base/core/std_additions.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 constexpr double nearly_one = 1 - 1e-9;
@@ -85,4 +85,4 @@ CampaignValue grid_value(const CampaignSpread& spread, std::uint64_t index) {
     return whole_at(std::get<WholeSpread>(spread), index);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

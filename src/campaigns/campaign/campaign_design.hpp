@@ -7,7 +7,7 @@
 
 #include "run/scenario/campaign_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// `count` numbers of (0, 1) for one parameter, each by itself.
 /// @param key of the parameter: the numbers of one do not depend on which others there are
@@ -27,4 +27,4 @@ std::uint64_t grid_size(const CampaignSpread& spread);
 /// One of them, `index` below grid_size().
 CampaignValue grid_value(const CampaignSpread& spread, std::uint64_t index);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -10,7 +10,7 @@
 
 #include "base/core/files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 using PlanJson = nlohmann::ordered_json;
@@ -204,4 +204,4 @@ Result<KeptCampaign> kept_campaign(const std::filesystem::path& folder) {
     return parse_kept_campaign(*text, path.string());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -14,7 +14,7 @@
 #include "run/emulator/data_folders.hpp"
 #include "wire/transport/file_descriptor.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// What is asked for.
 struct CampaignRequest {
@@ -70,4 +70,4 @@ Result<KeptCampaign> kept_campaign(const std::filesystem::path& folder);
 /// The same from its text. @param name of the file, for messages
 Result<KeptCampaign> parse_kept_campaign(std::string_view text, const std::string& name);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -19,7 +19,7 @@
 #include "run/scenario/scenario.hpp"
 #include "run/scenario/scenario_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// Everything is read, nothing is run.
 Result<Assembly> checked_assembly(const Scenario& scenario, const DataFolders& data);
@@ -348,4 +348,4 @@ Result<OpenedCampaign> open_campaign(const CampaignRequest& request) {
                           std::move(files)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -11,7 +11,7 @@
 #include "campaigns/campaign/sha256.hpp"
 #include "detail/vehicle_run.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 Result<void> add_named_content(Sha256& digest, const std::string& name, const Result<std::string>& content) {
@@ -231,4 +231,4 @@ std::vector<ScenarioChange> CampaignPlan::changes_of(const PlannedRun& run) cons
     return changes;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

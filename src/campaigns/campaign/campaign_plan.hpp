@@ -13,7 +13,7 @@
 #include "run/scenario/campaign_settings.hpp"
 #include "run/scenario/scenario_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// One run of a plan.
 struct PlannedRun {
@@ -89,4 +89,4 @@ struct CampaignBase {
 /// Fails with `outside` when a file cannot be read.
 Result<std::string> campaign_base_digest(const CampaignBase& base, const CampaignSettings& campaign, KeyedFiles& files);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

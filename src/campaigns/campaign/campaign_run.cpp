@@ -23,7 +23,7 @@
 #include "run/verdict/judge.hpp"
 #include "study/analysis/statistics.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// Names of all figures, units in them, in the order of tables: fix_share, horizontal_error_p95_m, …
 std::span<const std::string_view> metric_names();
@@ -280,4 +280,4 @@ Result<RunResult> run_of_campaign(const CampaignRunSetup& setup, const PlannedRu
     return result;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -14,7 +14,7 @@
 #include "run/emulator/data_folders.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// What becomes of a scenario in a campaign: of its wires scripted clients (client:NAME) stay, and in a run with a
 /// vehicle the first receiver has a pty; what it tells other programs is left out. Fails with `usage` for what makes
@@ -41,4 +41,4 @@ struct CampaignRunSetup {
 Result<RunResult> run_of_campaign(const CampaignRunSetup& setup, const PlannedRun& run,
                                   const std::vector<ScenarioChange>& changes, const std::atomic<bool>& stop);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

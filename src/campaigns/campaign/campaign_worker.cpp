@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 using WorkerJson = nlohmann::json;
@@ -109,4 +109,4 @@ Result<void> serve_runs(std::istream& questions, std::ostream& answers, const Da
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -9,7 +9,7 @@
 #include "base/core/result.hpp"
 #include "campaigns/campaign/campaign_run.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// What all runs have in common, the scenario's text among it: it does not change while a campaign runs.
 std::string worker_greeting(const CampaignRunSetup& setup);
@@ -25,4 +25,4 @@ Result<RunResult> worker_answer(std::string_view line, const ResultColumns& colu
 Result<void> serve_runs(std::istream& questions, std::ostream& answers, const DataFolders& data,
                         const std::atomic<bool>& stop, OrphanWatchdog* orphans = nullptr);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

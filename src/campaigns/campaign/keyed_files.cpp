@@ -13,7 +13,7 @@
 
 #include "campaigns/campaign/sha256.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // A file itself; of a folder all files in it, by name.
@@ -98,4 +98,4 @@ Result<std::optional<std::filesystem::path>> KeyedFiles::find_written() {
     return written;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

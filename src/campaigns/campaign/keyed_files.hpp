@@ -8,7 +8,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// Each run reads its files anew, so a key stands for a result only while they are what they were when it was made.
 /// State: what they were.
@@ -30,4 +30,4 @@ private:
     std::map<std::filesystem::path, SeenFile> seen_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 Sha256::Sha256() : context_(std::make_unique<SHA2_CTX>()) { SHA256Init(context_.get()); }
 Sha256::~Sha256() = default;
@@ -25,4 +25,4 @@ std::string sha256_hex(std::string_view bytes) {
     return digest.hex();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -7,7 +7,7 @@
 
 struct _SHA2_CTX;  // libmd's
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// SHA-256 (FIPS 180-4) of bytes that come piece by piece. The same on every machine.
 class Sha256 {
@@ -27,4 +27,4 @@ private:
 /// 64 hexadecimal digits.
 std::string sha256_hex(std::string_view bytes);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -18,7 +18,7 @@
 
 #include "base/core/files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 constexpr std::array<std::string_view, 5> fixed_columns{"key", "number", "seed", "status", "error"};
@@ -340,4 +340,4 @@ Result<void> for_each_result(const std::filesystem::path& folder,
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -13,7 +13,7 @@
 #include "base/core/result.hpp"
 #include "campaigns/campaign/campaign_plan.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// What became of one expectation.
 struct RunVerdict {
@@ -93,4 +93,4 @@ struct StoredResult {
 Result<void> for_each_result(const std::filesystem::path& folder,
                              const std::function<Result<void>(const StoredResult&)>& use);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

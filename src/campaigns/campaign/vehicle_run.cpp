@@ -10,7 +10,7 @@
 #include "base/core/threads.hpp"
 #include "detail/vehicle_run.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // The words as a shell parts and unquotes them (IEEE Std 1003.1, Shell Command Language, 2.2 and 2.3), without those
@@ -157,4 +157,4 @@ Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehi
     return vehicle_verdict(*outcome, timeout);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

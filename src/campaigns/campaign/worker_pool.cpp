@@ -27,7 +27,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// A program with a socket at its standard input and a pipe from its standard output, in a process group of its own, so
 /// that a terminal's Ctrl-C reaches whoever leads it alone. State: the process.
@@ -336,4 +336,4 @@ Result<void> run_jobs(const PoolWork& work, const std::function<Result<JobFate>(
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -12,7 +12,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// What is to be done.
 struct PoolWork {
@@ -45,4 +45,4 @@ enum class JobFate { done, again, given_up };
 Result<void> run_jobs(const PoolWork& work, const std::function<Result<JobFate>(const JobOutcome&)>& told,
                       const std::function<void()>& rest, const std::atomic<bool>& stop);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -8,7 +8,7 @@
 #include "base/core/files.hpp"
 #include "detail/shown_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // What the campaign itself goes on with.
@@ -188,4 +188,4 @@ std::string campaign_report_text(const CampaignResults& results, const CampaignS
     return text;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -9,7 +9,7 @@
 #include "campaigns/campaign_report/campaign_results.hpp"
 #include "campaigns/campaign_report/campaign_summary.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 struct CampaignReportOptions {
     std::filesystem::path html;     ///< empty: report.html in the campaign's folder
@@ -49,4 +49,4 @@ std::string campaign_report_junit(const CampaignResults& results, const Campaign
 /// The main figures in at most some dozens of lines.
 std::string campaign_report_text(const CampaignResults& results, const CampaignSummary& summary);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

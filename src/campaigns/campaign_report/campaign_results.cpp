@@ -13,7 +13,7 @@
 #include "detail/shown_names.hpp"
 #include "detail/sqlite_reader.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 constexpr std::array<std::string_view, 3> status_words{"passed", "failed", "error"};
@@ -266,4 +266,4 @@ Result<CampaignResults> read_campaign_results(const std::filesystem::path& datab
     return results;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -11,7 +11,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// How a run ended: all verdicts passed, one failed, or the run itself came to no end.
 enum class RunStatus { passed, failed, error };
@@ -64,4 +64,4 @@ inline constexpr std::size_t most_report_names = 500;
 /// such database: each message names the file, the table and the row.
 Result<CampaignResults> read_campaign_results(const std::filesystem::path& database);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

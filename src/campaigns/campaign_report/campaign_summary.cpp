@@ -12,7 +12,7 @@
 #include "detail/shown_names.hpp"
 #include "study/analysis/statistics.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 constexpr std::size_t longest_label = 32;
@@ -341,4 +341,4 @@ CampaignSummary summarise(const CampaignResults& results, std::size_t worst) {
     return summary;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

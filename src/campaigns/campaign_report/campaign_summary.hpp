@@ -13,7 +13,7 @@
 #include "campaigns/campaign_report/campaign_results.hpp"
 #include "campaigns/campaign_report/statistical_tests.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// Numbers farther from zero than this are taken for infinite: their squares could not be added up.
 inline constexpr double largest_reported_number = 1e100;
@@ -127,4 +127,4 @@ CampaignSummary summarise(const CampaignResults& results, std::size_t worst);
 /// How a run passed a verdict, nothing where it has none or came to no end.
 std::optional<bool> verdict_of(const CampaignResults& results, const VerdictSummary& verdict, std::size_t run);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -8,7 +8,7 @@
 #include "detail/shown_names.hpp"
 #include "study/plot/svg_document.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 std::string tile(std::string_view name, const std::string& figure, const std::string& note, bool warns = false) {
@@ -173,4 +173,4 @@ std::string style_sheet() {
     return sheet + dark_picture_rules() + "}\n";
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -7,7 +7,7 @@
 #include "detail/page_parts.hpp"
 #include "detail/shown_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -226,4 +226,4 @@ std::string campaign_report_junit(const CampaignResults& results, const Campaign
     return text + "  </testsuite>\n</testsuites>\n";
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -9,7 +9,7 @@
 #include "study/plot/metric_plots.hpp"
 #include "study/plot/rate_plots.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // The finite values of each level, ascending.
@@ -222,4 +222,4 @@ std::string metric_sections(const CampaignResults& results, const CampaignSummar
     return text;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -6,7 +6,7 @@
 #include "detail/shown_names.hpp"
 #include "study/plot/rate_plots.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 constexpr std::size_t most_rate_rows = 60;
@@ -246,4 +246,4 @@ std::string method_section(const CampaignSummary& summary) {
         few_trials, 100 * report_false_alarm, summary.tests);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -7,7 +7,7 @@
 #include "base/core/words.hpp"
 #include "detail/shown_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // C0, DEL and C1, which a terminal obeys, and the two that XML 1.0 does not have (section 2.2): U+FFFE, U+FFFF.
@@ -164,4 +164,4 @@ std::string p_value_text(double p) {
     return p < smallest_told ? std::string("p < 0.001") : fmt::format("p = {:.3f}", p);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -4,7 +4,7 @@
 
 #include "detail/shown_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // No honest text of a campaign is longer; a damaged or hostile database must not ask for gigabytes.
@@ -98,4 +98,4 @@ std::optional<Error> SqliteReader::each_row(std::string_view table, std::string_
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // Doubles all the way: the same bytes whatever the width of long double.
@@ -177,4 +177,4 @@ std::optional<GroupTest> kruskal_wallis_test(std::span<const double> values, std
     return test;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// The confidence of every interval of a report.
 inline constexpr double report_confidence = 0.95;
@@ -95,4 +95,4 @@ struct GroupTest {
 /// without a value do not count. Nothing for fewer than two groups, three values or where all values are equal.
 std::optional<GroupTest> kruskal_wallis_test(std::span<const double> values, std::span<const std::size_t> group);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

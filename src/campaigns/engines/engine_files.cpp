@@ -8,7 +8,7 @@
 #include "base/core/files.hpp"
 #include "base/core/number_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 Result<void> write_engine_file(const std::filesystem::path& path, const std::string& text) {
     if (const auto made = make_folder(path.parent_path()); !made) return fail(made.error());
@@ -55,4 +55,4 @@ void ResultCounter::read_on(const std::filesystem::path& file, std::uintmax_t si
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

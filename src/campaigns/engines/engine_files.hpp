@@ -10,7 +10,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// replace_file(), with the folders of the file where they are missing. The error has the code `outside`.
 Result<void> write_engine_file(const std::filesystem::path& path, const std::string& text);
@@ -36,4 +36,4 @@ private:
     std::map<std::filesystem::path, Seen> seen_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -12,7 +12,7 @@
 #include "campaigns/engines/engine_files.hpp"
 #include "campaigns/engines/engine_task.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // What the script says itself; another value would break what follows from it.
@@ -272,4 +272,4 @@ Result<KubernetesManifests> kubernetes_manifests(const EngineTask& task, const K
     return KubernetesManifests{std::move(*shards), std::move(*gather)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -12,7 +12,7 @@
 #include "base/core/result.hpp"
 #include "campaigns/engines/engine_task.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// What a cluster's users choose.
 struct SlurmSettings {
@@ -91,4 +91,4 @@ struct KubernetesManifests {
 /// none that Kubernetes takes, or the scenario or the results lie outside of the mount.
 Result<KubernetesManifests> kubernetes_manifests(const EngineTask& task, const KubernetesSettings& settings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -12,7 +12,7 @@
 #include "base/core/files.hpp"
 #include "base/core/words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 // The text with `with` before each of some characters.
@@ -243,4 +243,4 @@ std::string plain_name(const std::string& name) {
     return out.empty() ? "campaign" : out;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -13,7 +13,7 @@
 #include "base/core/result.hpp"
 #include "base/core/words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// One word after `#SBATCH`: between double quotes, with `\` before what ends them (sbatch(1) of Slurm 22.05 reads
 /// quotes and backslashes there as a shell does, and nothing else).
@@ -96,4 +96,4 @@ std::vector<std::string> gather_command(const EngineTask& task);
 /// left.
 std::string plain_name(const std::string& name);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

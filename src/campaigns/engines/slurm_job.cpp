@@ -13,7 +13,7 @@
 #include "base/core/process.hpp"
 #include "campaigns/engines/engine_files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 namespace {
 
 using FollowClock = std::chrono::steady_clock;  // a queue lives by the host's time
@@ -309,4 +309,4 @@ Result<int> follow_slurm(const EngineTask& task, SlurmJob job, const FollowOptio
     return Follower(task, std::move(job), options).follow();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

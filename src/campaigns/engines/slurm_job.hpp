@@ -11,7 +11,7 @@
 #include "campaigns/engines/engine_scripts.hpp"
 #include "campaigns/engines/engine_task.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// Numbers that Slurm gave.
 struct SlurmJob {
@@ -54,4 +54,4 @@ std::optional<SlurmJob> submitted_slurm(const EngineTask& task);
 ///         tasks were cancelled; 1 when shards were lost too often
 Result<int> follow_slurm(const EngineTask& task, SlurmJob job, const FollowOptions& options);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -5,7 +5,7 @@
 #include "base/core/std_additions.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 GlobalSample moved_place(const GlobalSample& origin, const LocalSample& local) {
@@ -169,4 +169,4 @@ void DataflashStart::take_receiver(const DataflashRecord& record, std::int64_t n
     receiver.epochs.push_back({row, gps_ns});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -4,7 +4,7 @@
 
 #include "detail/dataflash_places.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // Microseconds since the start; milliseconds in logs of before 2015, where a receiver's TimeMS is that of the week.
@@ -217,4 +217,4 @@ bool is_dataflash_track(const TrackFile& file) { return is_dataflash(file.bytes)
 
 Result<Track> read_dataflash_track(const TrackFile& file) { return DataflashTrack(file).read(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

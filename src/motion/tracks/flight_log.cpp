@@ -9,7 +9,7 @@
 #include "detail/flight_log.hpp"
 #include "receiver/observed/ulog.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 double ardupilot_metres_per_degree_east(double latitude_deg, double north_m) {
     const double middle_deg = latitude_deg + north_m / ardupilot_metres_per_degree / 2;
@@ -284,4 +284,4 @@ void add_count_note(std::vector<std::string>& notes, std::size_t count, const st
     if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -9,7 +9,7 @@
 #include "detail/text_track.hpp"
 #include "detail/xml_tree.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // GPX 1.0 and 1.1 (topografix.com/GPX/1/0 and 1/1): places above mean sea level by custom, times in UTC; speed and
@@ -198,4 +198,4 @@ void GpxReader::add_notes() {
 
 Result<Track> read_gpx(const TrackFile& file) { return GpxReader(file).read(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -5,7 +5,7 @@
 
 #include "detail/text_track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // Where an extension stands in a B record; empty: not there.
@@ -260,4 +260,4 @@ bool is_igc(const TrackFile& file) {
 
 Result<Track> read_igc(const TrackFile& file) { return IgcReader(file).read(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

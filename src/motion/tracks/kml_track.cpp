@@ -11,7 +11,7 @@
 #include "detail/text_track.hpp"
 #include "detail/xml_tree.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // KML 2.2 (OGC 07-147r2) with Google's gx:Track: the n-th <when> belongs to the n-th <gx:coord>. Without such a track,
@@ -291,4 +291,4 @@ Result<Track> read_kmz(const TrackFile& file) {
     return track;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 #include "detail/mission_items.hpp"
 #include "detail/text_track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr std::string_view wpl_mark = "QGC WPL ";
@@ -282,4 +282,4 @@ bool is_qgc_plan(const TrackFile& file) {
 
 Result<Track> read_qgc_plan(const TrackFile& file) { return PlanReader(file).read(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // What a command does to the way of the vehicle.
@@ -371,4 +371,4 @@ bool is_vtol_mav_type(int type) {
     return type >= first && type <= last;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

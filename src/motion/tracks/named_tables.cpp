@@ -13,7 +13,7 @@
 #include "base/core/words.hpp"
 #include "detail/text_track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr double named_foot = 0.3048, named_knot = 1852.0 / 3600;
@@ -348,4 +348,4 @@ Result<Track> read_named_dialect(const TrackFile& file) {
     return TextTrack(file, "CSV").refusal("no table of a known form");
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -13,7 +13,7 @@
 #include "detail/xml_tree.hpp"
 #include "motion/trajectory/track_csv.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr std::size_t other_looked_at = 65536;
@@ -212,4 +212,4 @@ std::vector<std::string_view> track_endings() {
     return endings;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

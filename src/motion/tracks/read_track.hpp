@@ -12,7 +12,7 @@
 #include "base/geo/geoid.hpp"
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// How a track is read.
 struct TrackReading {
@@ -31,4 +31,4 @@ bool is_track(ByteSpan bytes, const std::string& name);
 /// Endings of names that are tracks, each with its dot: ".csv", ".gpx", … For messages and options.
 std::vector<std::string_view> track_endings();
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -9,7 +9,7 @@
 #include "detail/text_track.hpp"
 #include "receiver/observed/observed_log.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 TextRow row_of(const ObservedEpoch& epoch) {
@@ -202,4 +202,4 @@ Result<void> GnssLoggerReader::take_fix() {
 
 Result<Track> read_gnss_logger(const TrackFile& file) { return GnssLoggerReader(file).read(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

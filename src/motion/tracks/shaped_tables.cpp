@@ -7,7 +7,7 @@
 
 #include "detail/text_track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr std::string_view shaped_comments = "#%";
@@ -203,4 +203,4 @@ bool is_shaped_dialect(const TrackFile& file) { return shaped_dialect_of(file) !
 
 Result<Track> read_shaped_dialect(const TrackFile& file) { return shaped_dialect_of(file)->read(file); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -10,7 +10,7 @@
 #include "base/core/words.hpp"
 #include "detail/text_track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // Digits at the front of `text`, which they are taken from; nothing unless there are `count`.
@@ -217,4 +217,4 @@ Result<Track> read_table_dialect(const TrackFile& file) {
     return read_shaped_dialect(file);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

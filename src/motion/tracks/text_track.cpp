@@ -10,7 +10,7 @@
 
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr double fastest_mps = 12000;  // faster than any orbit: a mistake of units
@@ -308,4 +308,4 @@ Result<Track> TextTrack::finish(std::string_view expected) {
     return std::move(track_);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -4,7 +4,7 @@
 
 #include "detail/tlog_vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // Ground stations (QGroundControl, Mission Planner, MAVProxy) put the time before each frame: microseconds of UTC since
@@ -129,4 +129,4 @@ Result<Track> read_tlog(const TrackFile& file) {
     return track_of_flight(std::move(flight), file.reading.geoid);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 
 #include "receiver/protocol/mavlink.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr double degree_of_1e7 = 1e-7;
@@ -280,4 +280,4 @@ std::vector<FlightClock> TlogVehicle::clocks(std::string& note) const {
     return clocks;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

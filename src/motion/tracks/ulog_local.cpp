@@ -5,7 +5,7 @@
 
 #include "detail/flight_log.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 bool differs(const UlogRecord& a, const UlogRecord& b, std::string_view field) {
@@ -69,4 +69,4 @@ std::optional<FlightRow> UlogLocalPlaces::row_of(const UlogRecord& record) {
     return row;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -6,7 +6,7 @@
 #include "detail/ulog_local.hpp"
 #include "receiver/observed/ulog.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // A height above the ellipsoid that differs from the one above the sea; simulators without a geoid write both alike.
@@ -283,4 +283,4 @@ Result<Track> read_ulog_track(const TrackFile& file) {
     return UlogTrack(*log, file).read();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // Takes one of the things that may stand before the root element; false where there is none.
@@ -102,4 +102,4 @@ std::size_t XmlTree::line_of(const pugi::xml_node& node) {
     return line_;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -6,7 +6,7 @@
 
 #include "base/core/std_additions.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr std::size_t least_arrivals = 16, most_arrivals = 64, learn_every = 4;
@@ -173,4 +173,4 @@ std::optional<ArrivalRhythm::Grid> ArrivalRhythm::likeliest_grid() const {
     return best;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

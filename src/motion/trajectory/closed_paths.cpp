@@ -9,7 +9,7 @@
 #include "detail/steered_parts.hpp"
 #include "motion/trajectory/waypoint_plan.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // The speed with which a curve can be run whose smallest radius is that.
@@ -144,4 +144,4 @@ PathPlanResult plan_lawnmower(const LawnmowerWish& wish) {
     return plan_waypoints(way);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -10,7 +10,7 @@
 #include "motion/trajectory/generated_path.hpp"
 #include "motion/trajectory/shaped_path.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr double rocket_g = 9.80665;          // m/s²
@@ -281,4 +281,4 @@ bool choose_balloon(BalloonWish& wish, std::string_view preset) {
     return true;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -9,7 +9,7 @@
 #include "base/core/std_additions.hpp"
 #include "motion/trajectory/waypoint_plan.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr std::array<std::array<int, 2>, 4> street_directions{{{0, 1}, {1, 0}, {0, -1}, {-1, 0}}};
@@ -150,4 +150,4 @@ PathPlanResult plan_generated(const GeneratedPath& path, std::uint64_t run_seed)
     return joined;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

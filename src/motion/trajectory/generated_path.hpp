@@ -18,7 +18,7 @@
 #include "motion/trajectory/vehicle.hpp"
 #include "motion/trajectory/waypoint_plan.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// Of all of them: the speed is that of the vehicle's limits, less where a turn would ask for more lateral
 /// acceleration than those have, which is told. They begin at rest, and go round for ever or come to rest after their
@@ -189,4 +189,4 @@ struct GeneratedPath {
 };
 PathPlanResult plan_generated(const GeneratedPath& path, std::uint64_t run_seed);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 #include "base/geo/geodetic.hpp"
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // A place and a motion over ground as a state: `motion` is east and north along the ellipsoid, and up. At a height the
@@ -80,4 +80,4 @@ TruthState Circle::at(GpsTime time) const {
                     {speed * std::sin(heading), speed * std::cos(heading), 0});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -6,7 +6,7 @@
 #include "base/core/result.hpp"
 #include "motion/trajectory/trajectory.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// Stands still.
 class FixedPoint : public Trajectory {
@@ -67,4 +67,4 @@ private:
     Shape shape_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 using Motion = LivePath::Motion;
@@ -117,4 +117,4 @@ Eigen::Vector3d slope_at_end(std::span<const double> times, std::span<const Eige
     return fit.row(1).transpose() / span;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -11,7 +11,7 @@
 #include "base/geo/geodetic.hpp"
 #include "detail/live_motion.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 using Motion = LivePath::Motion;
@@ -356,4 +356,4 @@ std::optional<GpsTime> LivePath::rests_at() const {
     return advanced(knots_.back().time, settings_.delay + Seconds(patience().fade));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -13,7 +13,7 @@
 #include "base/core/units.hpp"
 #include "motion/trajectory/trajectory.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// What becomes of a path whose source is silent (FEEDS.md 3.1).
 struct LivePathSettings {
@@ -131,4 +131,4 @@ private:
     mutable LivePathCounts counts_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -11,7 +11,7 @@
 
 #include "motion/trajectory/vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// A vehicle's motion in the coordinates of a GeodesicPlane: east and north of its origin along the ellipsoid, height
 /// above the ellipsoid; metres, seconds.
@@ -53,4 +53,4 @@ struct PathPlan {
 /// A sentence says why there is no such path, and what would do.
 using PathPlanResult = tl::expected<PathPlan, std::string>;
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

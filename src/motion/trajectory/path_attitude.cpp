@@ -8,7 +8,7 @@
 #include "base/geo/attitude.hpp"
 #include "detail/smooth_step.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 using Eigen::Quaterniond;
@@ -294,4 +294,4 @@ std::vector<AttitudeKnot> attitude_from_motion(Samples samples, VehicleClass veh
     return knots;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -14,7 +14,7 @@
 #include "base/geo/geodetic.hpp"
 #include "motion/trajectory/vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// How a body stands at one instant.
 struct AttitudeKnot {
@@ -78,4 +78,4 @@ struct MotionSample {
 std::vector<AttitudeKnot> attitude_from_motion(std::span<const MotionSample> samples, VehicleClass vehicle,
                                                std::optional<Angle> heading);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

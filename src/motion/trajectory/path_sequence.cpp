@@ -12,7 +12,7 @@
 #include "detail/steered_parts.hpp"
 #include "detail/waypoint_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // How an angle changes where a path is left; rad/s, rad/s².
@@ -381,4 +381,4 @@ PathPlanResult plan_sequence(const std::vector<SequenceStep>& steps, const Vehic
     return SequencePlanner(steps, vehicle, loop).plan();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -10,7 +10,7 @@
 #include "base/geo/attitude.hpp"
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 using Eigen::Vector3d;
@@ -324,4 +324,4 @@ std::string path_csv(const std::vector<PathSample>& samples) {
     return text;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -10,7 +10,7 @@
 #include "motion/trajectory/trajectory.hpp"
 #include "motion/trajectory/vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// A part of a path.
 struct PathSpan {
@@ -81,4 +81,4 @@ Result<std::vector<PathSample>> sample_path(const Trajectory& path, const PathSp
 /// that jumps the count of its jumps as `reset`.
 std::string path_csv(const std::vector<PathSample>& samples);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // Of degree 9: Abramowitz and Stegun, Handbook of Mathematical Functions, table 25.4, n = 5.
 template <class Function>
@@ -158,4 +158,4 @@ CurvePoint LemniscateCurve::at(double way) const {
     return point;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

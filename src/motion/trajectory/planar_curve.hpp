@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// A point of a curve; m, rad, 1/m.
 struct CurvePoint {
@@ -97,4 +97,4 @@ private:
     std::vector<double> ways_;  // at even steps of τ
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -11,7 +11,7 @@
 #include "detail/track_knots.hpp"
 #include "motion/trajectory/path_attitude.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // Whether a quintic piece accelerates far more than its ends and its way ask for (FEEDS.md 1.13.3).
@@ -324,4 +324,4 @@ TruthState PlayedPath::at(GpsTime time) const {
     return state;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -17,7 +17,7 @@
 #include "motion/trajectory/trajectory.hpp"
 #include "motion/trajectory/vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// How a curve is led through a track.
 struct CurveSettings {
@@ -151,4 +151,4 @@ private:
     AttitudeCurve closing_attitude_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

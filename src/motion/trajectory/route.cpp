@@ -11,7 +11,7 @@
 #include "detail/waypoint_parts.hpp"
 #include "motion/trajectory/waypoint_plan.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr std::size_t places_of_a_block = 1024;
@@ -263,4 +263,4 @@ Eigen::Vector3d RoutePath::acceleration(GpsTime time) const {
     return (velocity(step_s) - velocity(-step_s)) / (2 * step_s);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -14,7 +14,7 @@
 #include "motion/trajectory/trajectory.hpp"
 #include "motion/trajectory/waypoint_plan.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// How a route is flown.
 struct RouteSettings {
@@ -62,4 +62,4 @@ private:
     ShapedPath path_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

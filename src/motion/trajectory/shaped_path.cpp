@@ -8,7 +8,7 @@
 #include "base/geo/local_frame.hpp"
 #include "detail/smooth_step.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 Eigen::Vector3d GeodesicPlane::to_local(const Geodetic& place) const {
     const GeodesicLeg leg = geodesic_between(origin_, place);
@@ -100,4 +100,4 @@ TruthState ShapedPath::at(GpsTime time) const {
     return placed.state;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -13,7 +13,7 @@
 #include "motion/trajectory/vehicle.hpp"
 #include "world/flow/truth_state.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// Directions and distances from the origin are those of geodesics (azimuthal equidistant projection: Snyder, Map
 /// Projections, USGS 1395, chapter 25, with Karney's geodesics), heights are those above the ellipsoid. What runs
@@ -60,4 +60,4 @@ private:
     VehicleClass vehicle_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr std::int64_t clock_second_ns = 1'000'000'000;
@@ -282,4 +282,4 @@ std::optional<double> SourceClock::rate() const {
     return static_cast<double>(newest->source_ns - window_.front().source_ns) / received;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -10,7 +10,7 @@
 #include "base/time/gps_time.hpp"
 #include "motion/trajectory/trajectory.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// How long the vehicle took from one statement to the next, by the way and the velocities that it tells itself;
 /// nothing where it tells no velocity or hardly moves.
@@ -145,4 +145,4 @@ private:
     std::optional<GpsTime> untimed_;  // the newest
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 #include "detail/steered_parts.hpp"
 #include "detail/waypoint_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 WayHeights::Height WayHeights::at(double way) const {
     const auto after =
@@ -282,4 +282,4 @@ std::shared_ptr<const LocalShape> steered_joint(const LocalMotion& from, const L
     return nullptr;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -12,7 +12,7 @@
 #include "detail/steered_parts.hpp"
 #include "detail/waypoint_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr double radian_degrees = 180 / std::numbers::pi;
@@ -339,4 +339,4 @@ PathPlanResult SteeredPlanner::plan() {
 
 PathPlanResult plan_steered(const WaypointWish& wish) { return SteeredPlanner(wish).plan(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -8,7 +8,7 @@
 #include "detail/smooth_step.hpp"
 #include "motion/trajectory/vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 constexpr double swing_g = 9.80665;  // m/s²
@@ -159,4 +159,4 @@ std::shared_ptr<const LocalShape> hover_shape(const HoverWish& wish) { return st
 
 std::shared_ptr<const LocalShape> float_shape(const FloatWish& wish) { return std::make_shared<FloatShape>(wish); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

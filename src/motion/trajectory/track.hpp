@@ -16,7 +16,7 @@
 #include "base/time/gps_time.hpp"
 #include "motion/trajectory/vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// One row of a recorded path. Every reader of a format gives these and nothing else.
 struct TrackRow {
@@ -131,4 +131,4 @@ struct SmoothingReport {
 /// get a velocity. Works from jump to jump.
 SmoothingReport smooth_track(Track& track, VehicleClass vehicle, Smoothing smoothing);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

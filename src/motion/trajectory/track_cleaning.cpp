@@ -14,7 +14,7 @@
 #include "detail/track_order.hpp"
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // Exact: the degrees were zeros.
@@ -305,4 +305,4 @@ Result<std::vector<TrackGap>> clean_track(Track& track, Seconds gap, GapPolicy p
     return gaps;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

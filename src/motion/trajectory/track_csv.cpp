@@ -17,7 +17,7 @@
 #include "detail/track_table.hpp"
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 using enum TrackQuantity;
@@ -393,4 +393,4 @@ Result<Track> read_track_csv(std::string_view text, const std::string& name, con
     return TrackTable(name, geoid, origin).read(text);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

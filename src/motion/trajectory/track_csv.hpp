@@ -8,7 +8,7 @@
 #include "base/geo/geoid.hpp"
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// Reads a table whose first line names its columns (FEEDS.md 1.2; docs/scenario.md lists the names): a time, a place
 /// and, when there, velocity and attitude. Columns are parted by comma, semicolon, tab or blanks; lines that begin with
@@ -21,4 +21,4 @@ namespace skyloop {
 Result<Track> read_track_csv(std::string_view text, const std::string& name, const Geoid* geoid,
                              const std::optional<Geodetic>& origin = std::nullopt);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

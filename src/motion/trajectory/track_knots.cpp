@@ -8,7 +8,7 @@
 
 #include "base/geo/geodetic.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 using Knots = std::span<const TrackKnot>;
@@ -239,4 +239,4 @@ bool contradict(const TrackKnot& from, const TrackKnot& to) {
     return (moved - told).norm() > least_mps + part_of_speed * told.norm();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -9,7 +9,7 @@
 
 #include "base/core/std_additions.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // By more than a clock is ever set back while it counts on.
@@ -311,4 +311,4 @@ void put_rows_in_order(Track& track) {
     settle_strays(track, strays);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

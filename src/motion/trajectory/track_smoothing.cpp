@@ -11,7 +11,7 @@
 #include "base/core/std_additions.hpp"
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 using Rows = std::span<TrackRow>;
@@ -237,4 +237,4 @@ SmoothingReport smooth_track(Track& track, VehicleClass vehicle, Smoothing smoot
     return report;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -16,7 +16,7 @@
 #include "detail/track_table.hpp"
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 struct KnownColumn {
@@ -334,4 +334,4 @@ void TrackDates::date(Track& track, const std::string& count, const std::string&
         row.time += *zero;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -15,7 +15,7 @@
 #include "base/time/gps_time.hpp"
 #include "world/flow/truth_state.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// A path of the antenna.
 class Trajectory {
@@ -58,4 +58,4 @@ struct TruthSample {
     bool jump = false;  ///< the source says that it begins anew here: no way leads from the sample before to this one
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

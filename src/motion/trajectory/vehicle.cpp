@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 const std::array<VehicleTraits, vehicle_class_count>& vehicle_classes() {
     using Speed = MetresPerSecond;
@@ -151,4 +151,4 @@ constexpr std::array<VehicleLimits, vehicle_class_count> usual_values{{
 
 VehicleLimits usual_limits(VehicleClass kind) { return usual_values.at(static_cast<std::size_t>(kind)); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -11,7 +11,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// Balloons and rockets have paths of their own; no track is told to be theirs.
 enum class VehicleClass : std::uint8_t { fixed, pedestrian, car, rover, boat, plane, multirotor, balloon, rocket };
@@ -114,4 +114,4 @@ inline std::string_view vehicle_name(VehicleClass kind) { return traits_of(kind)
 inline constexpr std::array driven_vehicles{VehicleClass::multirotor, VehicleClass::plane, VehicleClass::rover,
                                             VehicleClass::boat,       VehicleClass::car,   VehicleClass::pedestrian};
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -11,7 +11,7 @@
 #include "detail/smooth_step.hpp"
 #include "detail/waypoint_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 namespace {
 
 // Places that lie on one another are one, which takes the stops and the last speed of all of them.
@@ -298,4 +298,4 @@ PathPlanResult FlyThroughPlanner::plan() {
 
 PathPlanResult plan_fly_through(const WaypointWish& wish) { return FlyThroughPlanner(wish).plan(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 #include "motion/trajectory/local_shape.hpp"
 #include "motion/trajectory/vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// A place that a way leads to.
 struct PlannedWaypoint {
@@ -43,4 +43,4 @@ struct WaypointWish {
 /// No plan: fewer than two waypoints, a turn that fits at no speed, a leg that is too steep, a plane that is to stop.
 PathPlanResult plan_waypoints(const WaypointWish& wish);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 Metres user_equivalent_range_error(const Arrival& arrival, const BaselineParameters& parameters) {
     return parameters.iono_fraction * arrival.iono_delay + parameters.tropo_fraction * arrival.tropo_delay +
@@ -83,4 +83,4 @@ Displacement<Ecef> Baseline::position_error(const Fix& fix, const Geodetic& plac
     return Displacement<Ecef>(scale.position_error.value() / std::sqrt(3.0) * normals);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -13,7 +13,7 @@
 #include "world/flow/arrivals.hpp"
 #include "world/flow/fix.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// User equivalent range error of one satellite: the fractions of its delays that are left uncorrected, and the whole
 /// detour of a reflected path (MODELS.md 3.9 and D-09).
@@ -66,4 +66,4 @@ private:
     Baseline baseline_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -3,7 +3,7 @@
 #include "receiver/error_model/baseline.hpp"
 #include "receiver/error_model/simple_models.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 std::unique_ptr<ErrorModel> make_error_model(const ErrorModelSettings& s) {
     switch (s.kind) {
@@ -23,4 +23,4 @@ std::unique_ptr<ErrorModel> make_error_model(const ErrorModelSettings& s) {
     return std::make_unique<Baseline>(s.baseline, s.sensor);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

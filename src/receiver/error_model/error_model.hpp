@@ -14,7 +14,7 @@
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A sensor model of the literature: from what is true and what arrives to what the receiver reports.
 class ErrorModel {
@@ -45,4 +45,4 @@ struct ErrorModelSettings {
 /// The model alone. What must arrive for it is made by the effects of effects_for().
 std::unique_ptr<ErrorModel> make_error_model(const ErrorModelSettings& settings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

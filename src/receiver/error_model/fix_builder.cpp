@@ -7,7 +7,7 @@
 
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 bool visible(const Arrival& arrival, const SelectionRule& rule) {
@@ -145,4 +145,4 @@ void FixBuilder::tell_motion_accuracy(Fix& fix, Metres deviation) {
     last_ = Placed{fix.time, deviation};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

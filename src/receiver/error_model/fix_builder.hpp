@@ -18,7 +18,7 @@
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Three normal numbers an epoch. An epoch without a fix draws them too, so that no later epoch depends on how many
 /// satellites were visible before.
@@ -113,4 +113,4 @@ private:
     std::optional<Placed> last_;  // of `motion_`
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -3,7 +3,7 @@
 #include "world/propagation/sensor_model_delays.hpp"
 #include "world/propagation/sensor_model_losses.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 Result<std::unique_ptr<PropagationEffect>> ionosphere_effect(const EffectSettings& s) {
@@ -50,4 +50,4 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> effects_for(ErrorModelKi
     return effects;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

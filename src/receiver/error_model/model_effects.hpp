@@ -15,7 +15,7 @@
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/propagation_parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// The numbers of all effects; those that the model does not need are not read.
 struct EffectSettings {
@@ -47,4 +47,4 @@ bool takes_electron_content(ErrorModelKind kind);
 Result<std::vector<std::unique_ptr<PropagationEffect>>> effects_for(ErrorModelKind kind,
                                                                     const EffectSettings& settings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

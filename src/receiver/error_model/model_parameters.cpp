@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::array all_kinds{ErrorModelKind::ideal,           ErrorModelKind::constant_sigma,
@@ -37,4 +37,4 @@ std::optional<ErrorModelKind> error_model_from_name(std::string_view name) {
     return std::nullopt;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

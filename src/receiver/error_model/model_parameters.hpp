@@ -9,7 +9,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Sensor models of the literature (MODELS.md sections 3 and 6).
 enum class ErrorModelKind { ideal, constant_sigma, satellite_count, whole_path, refraction, baseline };
@@ -69,4 +69,4 @@ struct RefractionParameters {
     double residual_fraction = 0.05;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -6,7 +6,7 @@
 #include "base/geo/local_frame.hpp"
 #include "receiver/error_model/baseline.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // Below it a horizontal velocity is what the turn from ECEF to the horizon has left of a vertical one.
@@ -84,4 +84,4 @@ Fix Refraction::fix(const TruthState& truth, const SkyView& sky, const Arrivals&
     return fix;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

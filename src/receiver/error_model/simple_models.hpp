@@ -7,7 +7,7 @@
 #include "receiver/error_model/error_model.hpp"
 #include "receiver/error_model/fix_builder.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// The fix is the truth, velocity included, with every healthy satellite above the mask, hidden or not (MODELS.md
 /// section 6). Its accuracies are 0. At rest its course is the last one.
@@ -70,4 +70,4 @@ private:
     PositionNoise noise_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

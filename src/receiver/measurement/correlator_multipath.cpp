@@ -8,7 +8,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // A triangle of correlation of height `weight` around `delay`.
@@ -153,4 +153,4 @@ CorrelatorMultipath correlator_multipath(std::span<const Echo> echoes, const Ech
     return result;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

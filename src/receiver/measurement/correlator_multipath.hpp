@@ -8,7 +8,7 @@
 #include "receiver/measurement/tracking_jitter.hpp"
 #include "world/flow/arrivals.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// An echo, against the direct signal.
 struct SignalEcho {
@@ -47,4 +47,4 @@ struct CorrelatorMultipath {
 /// echoes the twelve strongest count, and those too late to be heard do not.
 CorrelatorMultipath correlator_multipath(std::span<const Echo> echoes, const EchoedSignal& signal);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -4,7 +4,7 @@
 #include "detail/loop_noise.hpp"
 #include "receiver/measurement/tracking_jitter.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr double boc_jitter_ratio = 0.6;
@@ -160,4 +160,4 @@ LoopDeviations loop_deviations(const MeasurementParameters& parameters, const Co
     return result;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 #include "detail/signal_channel.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr MetresPerSecond slowest_motion{1};  // that changes the multipath
@@ -149,4 +149,4 @@ Measurement MeasurementEngine::measure(const Arrivals& arrivals, GpsTime time, c
     return channels_->measure(arrivals, time, settings);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

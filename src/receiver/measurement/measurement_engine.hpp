@@ -10,7 +10,7 @@
 #include "world/flow/observations.hpp"
 #include "world/flow/receiver_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// What was measured, and what was wrong with it.
 struct Measurement {
@@ -51,4 +51,4 @@ private:
     std::unique_ptr<Channels> channels_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

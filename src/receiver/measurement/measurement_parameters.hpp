@@ -5,7 +5,7 @@
 #include "receiver/measurement/receiver_clock.hpp"
 #include "receiver/measurement/tracking_jitter.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// When signals are found, kept and lost (MODELS.md 7.9).
 ///
@@ -54,4 +54,4 @@ struct MeasurementParameters {
     ErrorTerm scintillation;  ///< its dice alone: how strong it is, what arrives says
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -7,7 +7,7 @@
 #include "base/core/random.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr double millisecond_of_light = speed_of_light * 1e-3;  // m
@@ -75,4 +75,4 @@ void ReceiverClock::jump() {
     jumped_milliseconds_ -= static_cast<int>(milliseconds);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

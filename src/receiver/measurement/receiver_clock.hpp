@@ -4,7 +4,7 @@
 #include "base/core/random.hpp"
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// The two coefficients of an oscillator's Allan variance that a two-state clock follows.
 struct OscillatorNoise {
@@ -79,4 +79,4 @@ private:
     int jumped_milliseconds_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -7,7 +7,7 @@
 #include "receiver/measurement/tracking_jitter.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr double multipath_fall = 10;  // degrees of elevation over which m1 falls to 1/e
@@ -234,4 +234,4 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     return result;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

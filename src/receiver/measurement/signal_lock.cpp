@@ -4,7 +4,7 @@
 
 #include "detail/signal_lock.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr double strongest_signal = 50;     // dB-Hz; found first
@@ -142,4 +142,4 @@ bool CycleCount::resolve_half_cycle() {
     return true;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

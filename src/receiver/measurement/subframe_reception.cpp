@@ -11,7 +11,7 @@
 #include "world/gnss/broadcast_lnav.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A source whose records are unhealthy for the satellites that are observed as called unhealthy, in the bits of their
 /// own system: data and all signals bad (IS-GPS-200, 20.3.3.3.1.4, of QZSS likewise), all signals out of service
@@ -209,4 +209,4 @@ std::vector<Subframe> SubframeReception::receive(const Observations& observation
     return result;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

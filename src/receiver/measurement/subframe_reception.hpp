@@ -11,7 +11,7 @@
 #include "world/flow/observations.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Hands out what tracked satellites have sent since the epoch before: GPS and QZSS L1 C/A subframes of 6 s, Galileo
 /// E1-B and E5b-I pairs of pages of 2 s, BeiDou D1 subframes 1 to 3 of 6 s, GLONASS strings 1 to 5 of 2 s on L1. What
@@ -43,4 +43,4 @@ private:
     std::optional<GpsTime> last_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

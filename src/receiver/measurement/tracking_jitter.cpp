@@ -7,7 +7,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 CarrierToNoise::CarrierToNoise(DbHz cn0) : ratio_(std::pow(10, cn0.value() / 10)) {}
 
@@ -82,4 +82,4 @@ Angle scintillating_phase_jitter(const CarrierLoop& loop, CarrierToNoise cn0, do
     return Angle::radians(std::sqrt(loop.bandwidth.value() * squaring / signal.tracked));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

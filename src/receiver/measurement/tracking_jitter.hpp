@@ -4,7 +4,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// C/N0 as a ratio, taken out of its logarithm once for all the formulas that need it.
 class CarrierToNoise {
@@ -71,4 +71,4 @@ double scintillating_code_jitter_chips(const CodeLoop& loop, CarrierToNoise cn0,
 /// et al. 2003; MODELS.md 7.11).
 Angle scintillating_phase_jitter(const CarrierLoop& loop, CarrierToNoise cn0, double s4);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -10,7 +10,7 @@
 #include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // ArduPilot, libraries/AP_Logger/LogStructure.h, as FEEDS.md 1.8 sums it up.
@@ -343,4 +343,4 @@ Result<ObservedLog> read_dataflash(ByteSpan bytes, const std::string& name, cons
     return DataflashEpochs(name, reading).read(bytes);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -16,7 +16,7 @@
 #include "base/core/bytes.hpp"
 #include "receiver/observed/observed_log.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Where a column stands in a record, and how it is written.
 struct DataflashColumn {
@@ -90,4 +90,4 @@ private:
     bool cut_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -12,7 +12,7 @@
 #include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr Nanoseconds whole_day = std::chrono::hours(24), half_day = whole_day / 2;
@@ -214,4 +214,4 @@ void put_epochs_in_order(ObservedLog& log) {
     add_note(log, counts.repeated, "epochs that repeat a time or go back were left out");
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -7,7 +7,7 @@
 
 #include "base/core/std_additions.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // A satellite's C/N0 over the epochs of the log.
@@ -285,4 +285,4 @@ LogEvents EventFinder::find() {
 
 LogEvents find_events(const ObservedLog& log, const EventLimits& limits) { return EventFinder(log, limits).find(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 
 #include "receiver/observed/observed_log.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// From which size on something counts.
 struct EventLimits {
@@ -53,4 +53,4 @@ struct LogScenario {
 /// Fails with `input` for a log without any place.
 Result<LogScenario> scenario_of_log(const ObservedLog& log, const LogEvents& events);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

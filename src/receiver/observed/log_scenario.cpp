@@ -7,7 +7,7 @@
 #include "base/time/utc_time.hpp"
 #include "receiver/observed/log_events.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 std::string seconds_text(Nanoseconds span) { return fmt::format("{}", to_seconds(span).value()); }
@@ -121,4 +121,4 @@ Result<LogScenario> scenario_of_log(const ObservedLog& log, const LogEvents& eve
     return made;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -11,7 +11,7 @@
 #include "receiver/protocol/nmea_messages.hpp"
 #include "receiver/protocol/nmea_satellites.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // Of the number hhmmss.ss.
@@ -286,4 +286,4 @@ std::optional<NmeaEpoch> NmeaEpochs::end() {
     return std::exchange(taken_, {}).ended;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 #include "receiver/observed/observed_log.hpp"
 #include "receiver/protocol/nmea_messages.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// An epoch before somebody has found out its day. Its `time` says nothing.
 struct NmeaEpoch {
@@ -88,4 +88,4 @@ private:
     std::optional<int> fix_mode_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

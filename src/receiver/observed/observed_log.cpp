@@ -16,7 +16,7 @@
 #include "receiver/protocol/ubx_inertial.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // By the clock of epochs with a fix, where there are any: that of a receiver without one may be anything.
@@ -159,4 +159,4 @@ Result<ObservedLog> read_observed(ByteSpan bytes, const std::string& name, const
     return read_rtklib_solution(bytes, name, reading);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -12,7 +12,7 @@
 #include "base/geo/geoid.hpp"
 #include "world/flow/fix.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A signal that the receiver tracked.
 struct ObservedSignal {
@@ -99,4 +99,4 @@ bool is_observed(ByteSpan bytes);
 /// name: when it is of no kind, when nothing in it has a time, or when the asked receiver is not in it.
 Result<ObservedLog> read_observed(ByteSpan bytes, const std::string& name, const ObservedReading& reading);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

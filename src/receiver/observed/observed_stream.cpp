@@ -13,7 +13,7 @@
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 template <std::size_t N>
@@ -354,4 +354,4 @@ Result<ObservedLog> read_observed_stream(ByteSpan bytes, const std::string& name
     return StreamReader(name, reading).read(bytes);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

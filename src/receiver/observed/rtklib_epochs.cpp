@@ -8,7 +8,7 @@
 #include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 enum class PosCoordinates { degrees, sexagesimal, ecef };
@@ -263,4 +263,4 @@ Result<ObservedLog> read_rtklib_solution(ByteSpan bytes, const std::string& name
     return finish_log(std::move(log), reading);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 #include "detail/observed_parts.hpp"
 #include "receiver/protocol/known_sbf.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::uint32_t sbf_week_ms = 604'800'000, sbf_no_time = 0xFFFFFFFF;
@@ -152,4 +152,4 @@ std::optional<ObservedEpoch> SbfEpochs::end() {
     return std::exchange(under_way_, std::nullopt);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -4,7 +4,7 @@
 #include "receiver/observed/observed_log.hpp"
 #include "receiver/protocol/sbf_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Takes blocks one after the other: PVTGeodetic or PVTCartesian for the solution, DOP, AttEuler, MeasEpoch for the
 /// strengths of signals, ChannelStatus and SatVisibility for the elevations of satellites. Those of one time are one
@@ -36,4 +36,4 @@ private:
     std::vector<std::pair<SatelliteId, int>> elevations_;  // degrees
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

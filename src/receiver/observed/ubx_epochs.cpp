@@ -12,7 +12,7 @@
 #include "receiver/protocol/ubx_satellites.hpp"
 #include "receiver/protocol/ubx_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::uint32_t ubx_week_ms = 604'800'000;
@@ -272,4 +272,4 @@ std::optional<ObservedEpoch> UbxEpochs::end() {
     return ended;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -4,7 +4,7 @@
 #include "receiver/observed/observed_log.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Takes frames one after the other. Messages of one time of week are one epoch; its week is the one they say, or the
 /// one counted on from the epoch before, at first from 0. Of several places and types of fix the best told is taken:
@@ -70,4 +70,4 @@ private:
     std::size_t untyped_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

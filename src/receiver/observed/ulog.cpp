@@ -8,7 +8,7 @@
 
 #include "detail/observed_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // PX4 user guide, "ULog File Format", as FEEDS.md 1.7 sums it up.
@@ -254,4 +254,4 @@ Result<Ulog> parse_ulog(ByteSpan bytes, const std::string& name, const std::vect
     return UlogParser(bytes, name, topics).parse();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -16,7 +16,7 @@
 #include "base/core/result.hpp"
 #include "receiver/observed/observed_log.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A field of a format, by its name; nested formats are flattened, as "esc[0].rpm".
 struct UlogField {
@@ -75,4 +75,4 @@ bool is_ulog(ByteSpan bytes);
 /// Fails with `input` for a file that says it holds what a reader of today does not know.
 Result<Ulog> parse_ulog(ByteSpan bytes, const std::string& name, const std::vector<std::string_view>& topics);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 #include "detail/observed_parts.hpp"
 #include "receiver/observed/ulog.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // PX4-Autopilot, msg/SensorGps.msg: fix_type.
@@ -154,4 +154,4 @@ Result<ObservedLog> read_ulog(ByteSpan bytes, const std::string& name, const Obs
     return finish_log(std::move(log), reading);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

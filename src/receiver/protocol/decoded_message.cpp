@@ -15,7 +15,7 @@
 #include "receiver/protocol/mavlink_vehicle.hpp"
 #include "receiver/protocol/msp.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::size_t rtcm3_frame_head = 3, rtcm3_frame_tail = 3;
@@ -267,4 +267,4 @@ std::string text_line(const DecodedMessage& message) {
     return text;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

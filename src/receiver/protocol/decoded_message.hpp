@@ -11,7 +11,7 @@
 #include "base/core/bytes.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 struct DecodedField;
 
@@ -54,4 +54,4 @@ std::string text_line(const DecodedMessage& message);
 /// Text as a JSON string, quotes included. Bytes that are not ASCII are taken as ISO 8859-1.
 std::string json_string(std::string_view text);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

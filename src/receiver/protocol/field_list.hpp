@@ -23,7 +23,7 @@
 #include "base/core/bytes.hpp"
 #include "receiver/protocol/members.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// The most that a U1 counts; longer lists are written up to here.
 inline constexpr std::size_t most_items = 255;
@@ -196,4 +196,4 @@ std::optional<Message> decode_front(ByteSpan payload) {
     return message;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 int digits_of_scale(std::string_view text) {
@@ -88,4 +88,4 @@ DecodedValue text_value(std::string_view characters) {
     return {std::string(characters.substr(0, std::min(characters.find('\0'), characters.size())))};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

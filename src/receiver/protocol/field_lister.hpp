@@ -24,7 +24,7 @@
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// One name of the text.
 struct FieldName {
@@ -160,4 +160,4 @@ void list_nmea(const SentenceView& sentence, DecodedMessage& message);
 /// @param payload between length and CRC
 void list_rtcm3(ByteSpan payload, DecodedMessage& message);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

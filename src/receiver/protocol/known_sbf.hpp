@@ -5,7 +5,7 @@
 #include "receiver/protocol/sbf_raw_blocks.hpp"
 #include "receiver/protocol/sbf_status_blocks.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 template <class... Message>
 struct SbfBlocks {
@@ -24,4 +24,4 @@ using KnownSbfBlocks =
               SbfReceiverTime, SbfChannelStatus, SbfReceiverStatus, SbfSatVisibility, SbfQualityInd, SbfRfStatus,
               SbfGalAuthStatus, SbfReceiverSetup>;
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 #include "base/core/words.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::uint8_t mavlink_signed_flag = 0x01;
@@ -224,4 +224,4 @@ const std::vector<std::string>& mavlink_mode_names() {
     return names;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -21,7 +21,7 @@
 
 #include "receiver/protocol/field_list.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Who sends a frame, and which of its frames it is.
 struct MavlinkSource {
@@ -240,4 +240,4 @@ bool is_mavlink_mode(std::string_view mode, std::string_view name);
 /// All names that mavlink_mode_name() can give, ascending, without repetition.
 const std::vector<std::string>& mavlink_mode_names();
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

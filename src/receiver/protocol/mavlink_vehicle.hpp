@@ -13,7 +13,7 @@
 
 #include "receiver/protocol/mavlink.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// SYSTEM_TIME: the sender's clocks.
 struct MavlinkSystemTime {
@@ -240,4 +240,4 @@ using KnownMavlinkMessages =
                     MavlinkCommandLong, MavlinkCommandAck, MavlinkSimState, MavlinkHilGps, MavlinkHilStateQuaternion,
                     MavlinkGpsInput, MavlinkGpsRtcmData, MavlinkOdometry>;
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

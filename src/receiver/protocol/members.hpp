@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 namespace members {
 
@@ -117,4 +117,4 @@ decltype(auto) with_members(M& all, V&& to) {
 }
 // clang-format on
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -1,6 +1,6 @@
 #include "receiver/protocol/msp.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::uint8_t msp_v1_mark = 'M', msp_v2_mark = 'X';
@@ -66,4 +66,4 @@ std::optional<MspFrameView> parse_msp(ByteSpan bytes) {
                         bytes.subspan(msp_v2_head_size, *size - msp_v2_head_size - 1)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -10,7 +10,7 @@
 
 #include "receiver/protocol/field_list.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// One checked frame; the payload lives as long as the bytes that were parsed.
 struct MspFrameView {
@@ -92,4 +92,4 @@ struct MspSetRawGps {
 inline Bytes encode_msp(const MspSensorGps& m) { return encode_msp_v2(MspSensorGps::function, encode_payload(m)); }
 inline Bytes encode_msp(const MspSetRawGps& m) { return encode_msp_v1(MspSetRawGps::function, encode_payload(m)); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

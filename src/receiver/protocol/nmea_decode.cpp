@@ -8,7 +8,7 @@
 #include "detail/nmea_field_text.hpp"
 #include "receiver/protocol/nmea_messages.hpp"
 
-namespace skyloop::nmea_decoding {
+namespace skyloop::inline receiver::nmea_decoding {
 
 Result<NmeaMessage> decode_gns(FieldReader r) {
     Gns m;
@@ -100,9 +100,9 @@ Result<NmeaMessage> decode_hdt(FieldReader r) {
     return r.finish(std::move(m), 2);
 }
 
-}  // namespace skyloop::nmea_decoding
+}  // namespace skyloop::inline receiver::nmea_decoding
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 using namespace nmea_decoding;
@@ -306,4 +306,4 @@ Result<NmeaMessage> decode_nmea(std::string_view line) {
     return decode_nmea(*sentence);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -10,7 +10,7 @@
 #include "base/core/number_text.hpp"
 #include "detail/nmea_field_text.hpp"
 
-namespace skyloop::nmea_encoding {
+namespace skyloop::inline receiver::nmea_encoding {
 namespace {
 
 constexpr double largest_dop = 99.99;
@@ -97,9 +97,9 @@ void add_station(Sentence& sentence, const std::optional<int>& station, std::str
 
 std::string hex_text(int value) { return fmt::format("{:X}", value); }
 
-}  // namespace skyloop::nmea_encoding
+}  // namespace skyloop::inline receiver::nmea_encoding
 
-namespace skyloop::nmea_decoding {
+namespace skyloop::inline receiver::nmea_decoding {
 namespace {
 
 bool decimal_digits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
@@ -215,4 +215,4 @@ std::optional<NmeaMode> FieldReader::mode(std::size_t i) {
     return static_cast<NmeaMode>(field[0]);
 }
 
-}  // namespace skyloop::nmea_decoding
+}  // namespace skyloop::inline receiver::nmea_decoding

@@ -9,7 +9,7 @@
 #include "base/time/utc_time.hpp"
 #include "receiver/protocol/nmea_satellites.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Digits and version of encoded sentences. Digits beyond those shown are rounded, except those of times, which are
 /// cut: round an epoch's time once with rounded_utc(), so that every sentence of it, and the date, agree.
@@ -68,4 +68,4 @@ enum class NmeaMode : char {
     precise = 'P',
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

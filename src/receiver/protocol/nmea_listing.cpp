@@ -10,7 +10,7 @@
 #include "base/core/number_text.hpp"
 #include "receiver/protocol/field_lister.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // The fields of a sentence by name. A name may end in /t time of day, /d date, /c coordinate (two fields), /k a speed
@@ -210,4 +210,4 @@ void list_nmea(const SentenceView& sentence, DecodedMessage& message) {
     if (!more.empty()) message.fields.push_back({message.name.empty() ? "fields" : "more", {std::move(more)}});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -9,7 +9,7 @@
 #include "detail/nmea_field_text.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 using namespace nmea_encoding;
@@ -313,4 +313,4 @@ std::string encode(const NmeaMessage& message, const NmeaFormat& format) {
     return std::visit([&](const auto& m) { return encode(m, format); }, message);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -13,7 +13,7 @@
 #include "receiver/protocol/nmea_fields.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 // Every message names its talker ("GN"), and absent values are empty fields.
 
@@ -229,4 +229,4 @@ Result<NmeaMessage> decode_nmea(const SentenceView& sentence);
 /// parse_sentence(), then decode_nmea().
 Result<NmeaMessage> decode_nmea(std::string_view line);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

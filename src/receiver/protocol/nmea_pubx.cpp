@@ -8,7 +8,7 @@
 #include "base/core/number_text.hpp"
 #include "detail/nmea_field_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 using namespace nmea_encoding;
@@ -166,4 +166,4 @@ std::optional<int> single_byte_number(SatelliteId satellite) {
     return std::nullopt;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

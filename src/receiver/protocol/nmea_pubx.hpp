@@ -12,7 +12,7 @@
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// PUBX,00: position, velocity, accuracies.
 struct PubxPosition {
@@ -72,4 +72,4 @@ Result<PubxMessage> decode_pubx(const SentenceView& sentence);
 /// A satellite's number in one byte (RECEIVER.md 5.6), or nothing where it has none.
 std::optional<int> single_byte_number(SatelliteId satellite);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

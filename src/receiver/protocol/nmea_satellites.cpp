@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr NmeaSystem gps_group{"GP", 1, 1};
@@ -173,4 +173,4 @@ std::optional<SatelliteId> satellite_from_nmea(int number, std::string_view talk
     return std::nullopt;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Which fields the sentences have and how satellites are numbered (RECEIVER.md 5.2).
 enum class NmeaVersion { v2_1, v2_3, v4_0, v4_10, v4_11 };
@@ -38,4 +38,4 @@ std::optional<int> nmea_satellite_number(SatelliteId satellite, NmeaVersion vers
 /// GSA sentence (0 where there is none). Nothing for numbers outside every table.
 std::optional<SatelliteId> satellite_from_nmea(int number, std::string_view talker, int system_id = 0);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

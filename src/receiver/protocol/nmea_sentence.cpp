@@ -8,7 +8,7 @@
 
 #include "base/core/number_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 bool printable(char c) { return c >= 0x20 && c <= 0x7e; }
@@ -105,4 +105,4 @@ Result<SentenceView> parse_sentence(std::string_view line) {
     return sentence;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -9,7 +9,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// The exclusive or of the characters between `$` and `*` (NMEA 0183, 5.3).
 std::uint8_t nmea_checksum(std::string_view body);
@@ -54,4 +54,4 @@ struct SentenceView {
 /// wrong one (either letter case is accepted).
 Result<SentenceView> parse_sentence(std::string_view line);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -10,7 +10,7 @@
 #include "receiver/protocol/stream_splitter.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::uint8_t rtcm3_first_byte = 0xD3;
@@ -323,4 +323,4 @@ Bytes encode(const Rtcm3MsmObservations& observations) {
     return encode_rtcm3(bits.bytes());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

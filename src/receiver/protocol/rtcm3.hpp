@@ -10,7 +10,7 @@
 #include "base/core/bytes.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// One checked message; the payload lives as long as the frame.
 struct Rtcm3Message {
@@ -100,4 +100,4 @@ struct Rtcm3MsmObservations {
 /// those of the highest numbers first. Empty for other kinds and for no cells at all.
 Bytes encode(const Rtcm3MsmObservations& observations);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

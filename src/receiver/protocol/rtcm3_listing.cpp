@@ -6,7 +6,7 @@
 #include "base/core/bytes.hpp"
 #include "receiver/protocol/field_lister.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // A text with its length in the byte before (RTCM 10403.3, DF029 and its like).
@@ -192,4 +192,4 @@ void list_rtcm3(ByteSpan payload, DecodedMessage& message) {
         message.payload.assign(payload.begin(), payload.end());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -14,7 +14,7 @@
 #include "receiver/protocol/field_list.hpp"
 #include "receiver/protocol/sbf_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// The stamp of every block.
 struct SbfTime {
@@ -299,4 +299,4 @@ std::optional<Message> decode_sbf(ByteSpan body) {
     return message;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

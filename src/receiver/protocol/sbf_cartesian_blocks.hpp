@@ -10,7 +10,7 @@
 
 #include "receiver/protocol/sbf_blocks.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// PVTCartesian: position, velocity, time. Its fields are those of PVTGeodetic, but for the axes.
 struct SbfPvtCartesian {
@@ -177,4 +177,4 @@ struct SbfReceiverSetup {
     std::array<char, 21> reserved2{};
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // Numbers first … last of a system are SVIDs from `svid` on.
@@ -84,4 +84,4 @@ std::optional<SatelliteId> satellite_from_sbf(std::uint8_t svid) {
     return std::nullopt;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

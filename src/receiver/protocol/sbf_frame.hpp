@@ -10,7 +10,7 @@
 #include "base/core/bytes.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 inline constexpr std::uint8_t sbf_sync_1 = '$', sbf_sync_2 = '@';
 /// Sync, CRC, id and length (4.1.1).
@@ -43,4 +43,4 @@ std::optional<std::uint8_t> sbf_svid(SatelliteId satellite);
 /// The satellite of a number; nothing for GLONASS without a known slot, L-band and free numbers.
 std::optional<SatelliteId> satellite_from_sbf(std::uint8_t svid);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

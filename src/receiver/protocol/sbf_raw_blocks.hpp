@@ -16,7 +16,7 @@
 
 #include "receiver/protocol/sbf_blocks.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A further signal of a satellite (MeasEpochChannelType2): differences from the first one, in two parts each. The
 /// lowest numbers of the upper parts, with lower parts of 0, stand for nothing.
@@ -322,4 +322,4 @@ struct SbfGloNav {
     std::uint8_t c = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

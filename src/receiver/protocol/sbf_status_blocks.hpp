@@ -9,7 +9,7 @@
 
 #include "receiver/protocol/sbf_blocks.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// AttCovEuler: the covariance of AttEuler, deg².
 struct SbfAttCovEuler {
@@ -166,4 +166,4 @@ struct SbfEndOfAtt {
     SbfTime time;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -11,7 +11,7 @@
 #include "receiver/protocol/sbf_frame.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::size_t splitter_ubx_limit = 8192;
@@ -265,4 +265,4 @@ std::vector<StreamPiece> PatientSplitter::finish() {
     return splitter_.finish();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

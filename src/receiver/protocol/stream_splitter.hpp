@@ -13,7 +13,7 @@
 #include "base/core/bytes.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// What a piece of the stream is.
 enum class StreamKind : std::uint8_t {
@@ -120,4 +120,4 @@ private:
     std::optional<GpsTime> held_since_, gives_way_at_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -17,7 +17,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// CFG-PRT, the question for one port.
 struct CfgPrtPoll {
@@ -232,4 +232,4 @@ struct CfgValdel {
     }
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

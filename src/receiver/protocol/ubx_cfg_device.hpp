@@ -15,7 +15,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// CFG-TP5: a time pulse.
 struct CfgTp5 {
@@ -193,4 +193,4 @@ struct CfgUsb {
     std::array<std::uint8_t, 32> serial_number{};
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

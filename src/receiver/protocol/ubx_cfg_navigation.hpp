@@ -11,7 +11,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// CFG-NAVX5: expert settings of the navigation; only the groups in the masks count.
 struct CfgNavx5 {
@@ -136,4 +136,4 @@ struct CfgTmode3 {
     std::array<std::uint8_t, 8> reserved2{};
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

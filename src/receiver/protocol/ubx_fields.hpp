@@ -4,7 +4,7 @@
 #include "receiver/protocol/field_list.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// The most that a U1 counts; longer lists are written up to here.
 inline constexpr std::size_t ubx_most_items = most_items;
@@ -15,4 +15,4 @@ Bytes encode_frame(const Message& message) {
     return encode_frame(Message::message_id, encode_payload(message));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

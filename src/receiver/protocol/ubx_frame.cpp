@@ -1,6 +1,6 @@
 #include "receiver/protocol/ubx_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 UbxChecksum ubx_checksum(ByteSpan bytes) {
     UbxChecksum sum;
@@ -38,4 +38,4 @@ std::optional<UbxFrameView> parse_frame(ByteSpan bytes) {
     return UbxFrameView{{bytes[2], bytes[3]}, bytes.subspan(ubx_head_size, length)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 
 #include "base/core/bytes.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Which message a frame carries.
 struct UbxMessageId {
@@ -45,4 +45,4 @@ Bytes encode_frame(UbxMessageId id, ByteSpan payload);
 /// Reads exactly one frame; nothing when sync, length or checksum do not hold.
 std::optional<UbxFrameView> parse_frame(ByteSpan bytes);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -18,7 +18,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// MON-HW: pins, gain, antenna and jamming (RECEIVER.md 3.2). Pins that VP lists: 17 on u-blox 7 and later, 25
 /// before; the 56 bytes of later receivers stand in no document, and are taken as 13.
@@ -214,4 +214,4 @@ struct SecSiglog {
     }
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

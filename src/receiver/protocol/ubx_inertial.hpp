@@ -12,7 +12,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// NAV-ATT: attitude (M8 interface description).
 struct NavAtt {
@@ -138,4 +138,4 @@ struct HnrIns {
     std::array<std::int32_t, 3> accel{};     ///< 1e-2 m/s² along x, y, z
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -17,7 +17,7 @@
 #include "receiver/protocol/ubx_services.hpp"
 #include "receiver/protocol/ubx_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // A text as a template argument.
@@ -316,4 +316,4 @@ void list_ubx(const UbxFrameView& frame, DecodedMessage& message) {
     message.payload.assign(frame.payload.begin(), frame.payload.end());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -18,7 +18,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// ACK-ACK: a configuration message was done.
 struct AckAck {
@@ -240,4 +240,4 @@ struct MonMsgpp {
     std::array<std::uint32_t, 6> skipped{};  ///< bytes
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

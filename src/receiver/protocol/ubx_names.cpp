@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // One list for both directions; searched by halves, so ascending.
@@ -264,4 +264,4 @@ std::string to_string(UbxMessageId id) {
     return fmt::format("{:02X}-{:02X}", id.message_class, id.id);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

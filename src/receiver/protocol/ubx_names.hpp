@@ -9,7 +9,7 @@
 
 #include "receiver/protocol/ubx_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A message and its name: "NAV-PVT"; of the classes that CFG-MSG numbers the sentences of other protocols by, "GGA"
 /// (F0), "PUBX-00" (F1) and "RTCM-1005" (F5).
@@ -30,4 +30,4 @@ std::optional<UbxMessageId> ubx_message_from_name(std::string_view name);
 /// The name; of a message without one class and id in hexadecimal digits, "01-07".
 std::string to_string(UbxMessageId id);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

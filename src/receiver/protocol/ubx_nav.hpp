@@ -12,7 +12,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// What NAV-PVT gained after u-blox 7: heading of the vehicle and magnetic declination.
 struct NavPvtVehicle {
@@ -221,4 +221,4 @@ struct NavEell {
     std::uint32_t minor = 0;   ///< mm
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

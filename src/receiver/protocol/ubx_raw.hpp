@@ -12,7 +12,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// One satellite of RXM-MEASX.
 struct RxmMeasxItem {
@@ -138,4 +138,4 @@ struct RxmRlm {
     std::uint8_t reserved1 = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

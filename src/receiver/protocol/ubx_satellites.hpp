@@ -12,7 +12,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// One satellite of NAV-SAT.
 struct NavSatItem {
@@ -162,4 +162,4 @@ struct RxmSfrbx {
     }
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

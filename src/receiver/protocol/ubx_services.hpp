@@ -18,7 +18,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// One satellite of NAV-ORB.
 struct NavOrbItem {
@@ -248,4 +248,4 @@ struct NavSvin {
     std::array<std::uint8_t, 2> reserved3{};
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

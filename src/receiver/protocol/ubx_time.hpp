@@ -12,7 +12,7 @@
 
 #include "receiver/protocol/ubx_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// NAV-TIMEUTC: the epoch in UTC.
 struct NavTimeutc {
@@ -155,4 +155,4 @@ struct TimVrfy {
     std::uint8_t reserved = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -6,7 +6,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 constexpr Angle lowest_divisor = Angle::degrees(0.1);  // of 1/sin e
@@ -104,4 +104,4 @@ Metres SiteCorrections::troposphere(Angle elevation) const {
     return Metres(0);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

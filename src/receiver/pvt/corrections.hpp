@@ -11,7 +11,7 @@
 #include "world/gnss/ephemeris.hpp"
 #include "world/gnss/shell_ionosphere.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Coefficients of an ordinary day, those of GPS on 2004-01-01, for a receiver that has heard none.
 const KlobucharCoefficients& default_klobuchar_coefficients();
@@ -71,4 +71,4 @@ private:
     CorrectionKnowledge knowledge_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -8,7 +8,7 @@
 #include "world/gnss/constants.hpp"
 #include "world/gnss/shell_ionosphere.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // What one unit of an error that all satellites share does to the solution.
@@ -109,4 +109,4 @@ ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, Di
             Metres(scale * std::sqrt(covariance(2, 2)))};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

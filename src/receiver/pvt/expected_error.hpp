@@ -12,7 +12,7 @@
 #include "receiver/pvt/single_point.hpp"
 #include "world/flow/fix.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// 0 … 360°.
 inline Angle course_of(const VelocityNed& v) {
@@ -72,4 +72,4 @@ struct ToldAccuracy {
 ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,
                            const DifferentialParameters& parameters);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // The equation with the largest normalised residual, of those that a residual can accuse.
@@ -114,4 +114,4 @@ std::optional<CheckedSolution> solve_free_of_ionosphere(IntegrityMonitor& monito
     return monitor.solve(equations, setup);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

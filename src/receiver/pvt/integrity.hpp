@@ -11,7 +11,7 @@
 #include "receiver/pvt/single_point.hpp"
 #include "world/flow/observations.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// The value that a chi-square variable exceeds with the given probability, x of Q(ν/2, x/2).
 /// @param degrees of freedom, from 1  @param probability above 0, below 1
@@ -52,4 +52,4 @@ bool keep_strongest(const SinglePoint& point, std::size_t most, std::vector<Rang
 std::optional<CheckedSolution> solve_free_of_ionosphere(IntegrityMonitor& monitor, std::span<RangeEquation> equations,
                                                         const SinglePointSetup& setup);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

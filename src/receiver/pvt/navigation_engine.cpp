@@ -13,7 +13,7 @@
 #include "receiver/pvt/single_point.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // Of a range rate, beside what the loop itself knows; ours.
@@ -392,4 +392,4 @@ Fix NavigationEngine::solve(const Observations& observations, const ReceiverSett
 }
 bool NavigationEngine::velocity_known() const { return state_->velocity_known(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -14,7 +14,7 @@
 #include "world/flow/receiver_settings.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// What the receiver has from the satellites and from its maker. All of it outlives the engine.
 struct NavigationKnowledge {
@@ -46,4 +46,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -6,7 +6,7 @@
 #include "base/core/units.hpp"
 #include "base/geo/geodetic.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// What the receiver takes off the pseudoranges for the ionosphere.
 enum class IonosphereCorrection {
@@ -107,4 +107,4 @@ struct NavigationParameters {
     std::optional<Geodetic> fixed_position;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

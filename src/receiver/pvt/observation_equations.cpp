@@ -6,7 +6,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // A gap after which nobody can say that no cycle was lost.
@@ -109,4 +109,4 @@ std::optional<RangeEquation> range_equation(TransmitterSource& transmitters, con
     return e;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

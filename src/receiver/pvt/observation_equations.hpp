@@ -12,7 +12,7 @@
 #include "world/flow/observations.hpp"
 #include "world/flow/receiver_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// Hatch's filter for every signal: the mean of the code over a window, carried along by the phase (Hatch 1982).
 ///
@@ -51,4 +51,4 @@ CorrectionState correct(Observations& observations, CorrectionState wanted);
 std::optional<RangeEquation> range_equation(TransmitterSource& transmitters, const Observation& first,
                                             std::span<const Observation* const> others, GpsTime receive_time);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 using Eigen::Vector3d;
@@ -158,4 +158,4 @@ std::optional<FilteredPosition> PositionFilter::coast(GpsTime time) {
     return carried;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -10,7 +10,7 @@
 #include "receiver/pvt/navigation_parameters.hpp"
 #include "world/flow/receiver_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// None where the settings have no limits.
 MotionLimits motion_limits(const ReceiverSettings& settings);
@@ -66,4 +66,4 @@ private:
     std::optional<Eigen::Vector3d> held_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

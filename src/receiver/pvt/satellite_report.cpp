@@ -7,7 +7,7 @@
 #include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 bool is_same_issue(const Ephemeris& a, const Ephemeris& b) {
@@ -205,4 +205,4 @@ std::vector<SatelliteStatus> SatelliteReport::list(const ReportInput& input) {
     return list;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

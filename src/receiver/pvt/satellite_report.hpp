@@ -16,7 +16,7 @@
 #include "world/flow/receiver_settings.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A receiver's memory of what the satellites send. As a source of orbits it gives what it knows.
 ///
@@ -95,4 +95,4 @@ private:
     std::vector<Candidate> candidates_;  // ascending
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

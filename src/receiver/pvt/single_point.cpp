@@ -9,7 +9,7 @@
 #include "detail/normal_equations.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // Steps shrink with their square over the satellites' distance: after this one 1e-9 m are left.
@@ -391,4 +391,4 @@ std::optional<SinglePoint> solve_clocks(std::span<const RangeEquation> equations
     return adjustment.result(true);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -11,7 +11,7 @@
 #include "receiver/pvt/transmitter.hpp"
 #include "world/gnss/dop.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// One clock for each system; QZSS and SBAS keep GPS's time.
 inline constexpr std::size_t clock_count = 5;
@@ -112,4 +112,4 @@ struct SinglePointVelocity {
 std::optional<SinglePointVelocity> solve_velocity(std::span<const DopplerEquation> equations,
                                                   std::optional<Eigen::Vector3d> held_up = std::nullopt);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

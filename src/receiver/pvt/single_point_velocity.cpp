@@ -4,7 +4,7 @@
 #include "receiver/pvt/single_point.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 std::optional<SinglePointVelocity> solve_velocity(std::span<const DopplerEquation> equations,
                                                   std::optional<Eigen::Vector3d> held_up) {
@@ -46,4 +46,4 @@ std::optional<SinglePointVelocity> solve_velocity(std::span<const DopplerEquatio
                                *inverse};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -5,7 +5,7 @@
 #include "world/gnss/constants.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 namespace {
 
 // Beyond this the parabola of moved() is left for a new look at the orbit.
@@ -96,4 +96,4 @@ std::optional<Transmitter> PreciseTransmitters::at(SatelliteId satellite, Signal
     return moved(transmitter, reading.rest - transmitter.clock_bias);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -9,7 +9,7 @@
 #include "world/gnss/precise_orbits.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A satellite at the instant of transmission, in the ECEF frame of that instant.
 struct Transmitter {
@@ -76,4 +76,4 @@ private:
 /// The transmitter `span` later (or earlier): at most a few milliseconds.
 Transmitter moved(const Transmitter& transmitter, Seconds span);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -15,7 +15,7 @@
 #include "firmware/messages/field_values.hpp"
 #include "run/control/command_json.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr float most_attenuation_db = 100, most_excess_m = 100'000;
@@ -282,4 +282,4 @@ std::string Session::ports_text() const {
     return text_of(list);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

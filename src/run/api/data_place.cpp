@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // Something of the library's own: a function that it shows may be taken for one of the program's.
@@ -28,4 +28,4 @@ DataFolders library_data_folders(const char* named) {
     return data;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 
 #include "detail/session.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Larger ones are a size that was never set.
 inline constexpr std::size_t largest_struct = 4096;
@@ -55,7 +55,7 @@ void write_struct(T value, T* out) {
     std::memcpy(out, &value, std::min<std::size_t>(size, sizeof(T)));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run
 
 /// A handle: a run, and who is at it.
 struct sky_emulator {
@@ -65,7 +65,7 @@ struct sky_emulator {
     std::unique_ptr<skyloop::Session> session;
 };
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::size_t most_told_paths = 1024;
@@ -212,7 +212,7 @@ Answer<void> tell_paths(Session& session, std::uint32_t receiver, std::span<cons
 
 }  // namespace
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run
 
 using skyloop::Answer;
 using skyloop::refuse;

@@ -4,7 +4,7 @@
 
 #include "base/core/bytes.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr Nanoseconds driver_look{1'000'000};
@@ -77,4 +77,4 @@ std::optional<GpsTime> LedPort::acts_at(GpsTime now) const {
     return std::max(look, last_look(now) + driver_look);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -4,7 +4,7 @@
 
 #include "run/control/status_json.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 std::shared_ptr<const firmware::NavigationState> without_fix(firmware::NavigationState state) {
@@ -64,4 +64,4 @@ std::string RunWatcher::status(GpsTime now) {
     return recent_status_json(*board_.latest());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "motion/trajectory/live_path.hpp"
 #include "motion/trajectory/trajectory.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What the positions of a caller refer to.
 struct TruthFrames {
@@ -298,4 +298,4 @@ sky_progress Session::progress() const {
     return told;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "run/emulator/wires.hpp"
 #include "run/scenario/scenario_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::uint32_t known_overrides = SKY_CREATE_SEED | SKY_CREATE_ORIGIN;
@@ -177,4 +177,4 @@ Session::~Session() {
             log(SKY_LOG_ERROR, station.recorder()->failure()->message);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

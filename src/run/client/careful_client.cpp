@@ -11,7 +11,7 @@
 #include "receiver/protocol/ubx_time.hpp"
 #include "run/client/configuration_dialogue.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 std::vector<std::uint32_t> usual_speeds() { return {9600, 38400, 115200, 57600, 230400, 19200, 460800, 4800}; }
 
@@ -327,4 +327,4 @@ void CarefulUbxClient::hear_solution(const ObservedEpoch& epoch) {
     judge(solution);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -18,7 +18,7 @@
 #include "run/client/health_checks.hpp"
 #include "run/client/scripted_client.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Tries one speed after the other until it is told that something whole was heard.
 ///
@@ -152,4 +152,4 @@ private:
     std::optional<GpsTimeHeard> gps_time_;  // of the last NAV-TIMEGPS
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -11,7 +11,7 @@
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr Nanoseconds answer_time = std::chrono::milliseconds(500);
@@ -181,4 +181,4 @@ std::vector<DialogueStep> ubx_configuration() {
             message_read_back(NavPvt::message_id)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

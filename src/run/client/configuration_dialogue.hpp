@@ -11,7 +11,7 @@
 #include "base/time/gps_time.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// One message to a receiver and what answers it.
 struct DialogueStep {
@@ -72,4 +72,4 @@ std::vector<DialogueStep> ubx_configuration();
 /// The period of solutions that the careful client asks for, ms: 5 Hz, the default of ArduPilot and INAV.
 inline constexpr std::uint16_t ubx_client_period_ms = 200;
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -7,7 +7,7 @@
 
 #include "base/time/utc_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // 1e-6 degrees are a decimetre: nobody is there, and receivers that have no place tell exactly this one.
@@ -274,4 +274,4 @@ std::optional<std::string> TimeChecks::doubt_lag(const HeardSolution& s, const H
     return fmt::format("the receiver's time is {:.2f} s off what our clock expects", -later);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "base/time/gps_time.hpp"
 #include "receiver/observed/observed_log.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A solution as a client hears it. Angles are in degrees, as on the wire.
 struct HeardSolution {
@@ -120,4 +120,4 @@ private:
     MotionChecks motion_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

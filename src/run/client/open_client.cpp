@@ -15,7 +15,7 @@
 #include "run/client/careful_client.hpp"
 #include "run/client/scripted_client.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Asks for MON-VER at 9600 bit/s and waits for it for ever, switches NAV-PVT on once, and takes each NAV-PVT whose
 /// fix type is one. Silence, old positions, accuracies and times are nothing to it.
@@ -105,4 +105,4 @@ Result<std::unique_ptr<Transport>> open_client(std::string_view name) {
     return std::unique_ptr<Transport>(std::make_unique<NaiveNmeaClient>());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "base/core/result.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// "careful-ubx", "naive-ubx", "careful-nmea", "naive-nmea".
 std::span<const std::string_view> client_names();
@@ -23,4 +23,4 @@ Result<void> check_client(std::string_view name);
 /// A new client of that name. Fails as check_client().
 Result<std::unique_ptr<Transport>> open_client(std::string_view name);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -1,6 +1,6 @@
 #include "run/client/scripted_client.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr Nanoseconds acts_every = std::chrono::milliseconds(10);
@@ -42,4 +42,4 @@ void ScriptedClient::believe(bool trusts, std::string reason) {
     news_ = belief_;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "receiver/protocol/stream_splitter.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A client of a receiver: hears its bytes cut into messages, speaks, has a line speed and a belief.
 ///
@@ -58,4 +58,4 @@ private:
     std::optional<ClientBelief> news_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -16,7 +16,7 @@
 #include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Those of src/run/control/page, by name.
 std::span<const EmbeddedFile> page_files();
@@ -222,4 +222,4 @@ ControlResponse answer(const ControlRequest& request, const AccessRules& rules, 
     return error_response(404, fmt::format("no page '{}'; expected /", request.path().substr(0, 200)));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -11,7 +11,7 @@
 #include "detail/control_json.hpp"
 #include "run/fault/command.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::array<std::string_view, 8> parameter_type_names{"number", "whole_number", "flag",  "word",
@@ -222,4 +222,4 @@ std::string command_kinds_json() {
     return json_text(list);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

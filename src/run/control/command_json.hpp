@@ -8,7 +8,7 @@
 #include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// {"command": "set_baud", "baud": 9600, "receiver": "front"}: a command of command_kinds(), checked. A start_fault
 /// with a "kind" is one of live_fault_from_json(). Fails with `input`: one line that names the member, what was found
@@ -27,4 +27,4 @@ std::string command_json(const Command& command);
 std::string fault_kinds_json();
 std::string command_kinds_json();
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

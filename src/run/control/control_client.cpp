@@ -12,7 +12,7 @@
 
 #include "detail/chunked_body.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::size_t longest_answer = std::size_t{64} << 20U;
@@ -157,4 +157,4 @@ Result<void> ControlClient::watch(double rate, const std::function<bool(std::str
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

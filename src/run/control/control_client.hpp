@@ -11,7 +11,7 @@
 #include "run/control/control_request.hpp"
 #include "run/control/control_server.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Asks and waits for the answer; one connection a question. Fails with `outside` when nobody answers in time.
 class ControlClient {
@@ -29,4 +29,4 @@ private:
     std::chrono::milliseconds patience_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "base/core/words.hpp"
 #include "detail/control_json.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 bool same_header(std::string_view a, std::string_view b) {
@@ -150,4 +150,4 @@ std::optional<ControlResponse> refusal(const ControlRequest& request, const Acce
     return response;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "run/emulator/status_snapshot.hpp"
 #include "run/fault/command.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Without blanks and tabs at both ends.
 inline std::string_view without_blanks(std::string_view text) {
@@ -91,4 +91,4 @@ std::string given_fault_name(const Command& command, const ControlSources& sourc
 /// The OpenAPI 3.1 description of all this, from the same tables.
 std::string openapi_json(std::string_view version);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "run/emulator/director.hpp"
 #include "run/emulator/real_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using boost::asio::ip::tcp;
@@ -185,4 +185,4 @@ std::string ControlServer::url() const {
     return token().empty() ? address : address + "#token=" + token();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -11,7 +11,7 @@
 #include "run/emulator/command_queue.hpp"
 #include "run/emulator/status_board.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Where to listen, and to whom.
 struct ControlOptions {
@@ -57,4 +57,4 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -6,7 +6,7 @@
 #include "run/control/control_request.hpp"
 #include "run/fault/command.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 Json json_answer(std::string_view description, std::string_view type = "application/json") {
@@ -142,4 +142,4 @@ std::string openapi_json(std::string_view version) {
     return json_text(json);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "detail/server_core.hpp"
 #include "run/control/status_json.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 namespace http = boost::beast::http;
@@ -317,4 +317,4 @@ void serve_stream(ServerCore& core, TcpSocket socket, ClientSlot slot,
         ->accept(std::move(request_and_rate.first));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

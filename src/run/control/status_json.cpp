@@ -11,7 +11,7 @@
 #include "detail/control_json.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::size_t longest_dialogue_text = 400, most_hex_bytes = 48;
@@ -301,4 +301,4 @@ std::string scene_json(const UrbanScene& scene, std::size_t most) {
                       {"trees", std::move(trees)}});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

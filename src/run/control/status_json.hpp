@@ -7,7 +7,7 @@
 #include "run/emulator/status_snapshot.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// From where on the lines of a snapshot are new to somebody.
 struct SeenLines {
@@ -32,4 +32,4 @@ std::string timeline_json(const StatusSnapshot& snapshot);
 /// `most` of them (the largest), and trees as boxes.
 std::string scene_json(const UrbanScene& scene, std::size_t most = 20000);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

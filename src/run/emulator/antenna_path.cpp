@@ -11,7 +11,7 @@
 #include "motion/trajectory/trajectory.hpp"
 #include "run/emulator/assembly.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double slowest_mps = 0.01;  // below it there is no course
@@ -161,4 +161,4 @@ std::optional<Geodetic> place_before_start(const Scenario& scenario, std::size_t
     return now.geodetic;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -11,7 +11,7 @@
 #include "base/geo/geodetic.hpp"
 #include "motion/trajectory/trajectory.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// From the point that follows the trajectory to the antenna, in the axes of the vehicle; metres.
 struct AntennaOffset {
@@ -59,4 +59,4 @@ private:
     Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  ///< of all moves, ECEF
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

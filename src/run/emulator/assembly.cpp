@@ -18,7 +18,7 @@
 #include "run/emulator/load_track.hpp"
 #include "run/scenario/timeline_check.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 ErrorModelSettings error_model_settings(const Scenario& scenario, const SimulationSetup& setup) {
@@ -335,4 +335,4 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
     return assembly;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

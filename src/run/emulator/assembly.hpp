@@ -22,7 +22,7 @@
 #include "run/scenario/scenario.hpp"
 #include "world/propagation/atmosphere_losses.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 struct WireRequest;
 
@@ -158,4 +158,4 @@ enum class SummaryOf { beginning, end, cut_end };
 std::string run_summary(const Scenario& scenario, const Assembly& assembly, std::string_view version,
                         SummaryOf what = SummaryOf::end);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -8,7 +8,7 @@
 
 #include "run/fault/command.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Commands on their way from other threads to the loop, which takes them between two instants.
 class CommandQueue {
@@ -24,4 +24,4 @@ private:
     std::vector<Command> waiting_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // As the XDG base directory specification says: a relative path there does not count.
@@ -25,4 +25,4 @@ DataFolders find_data_folders(const std::filesystem::path& beside, const std::fi
     return data;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Folders that may hold boards/ and geoids/, the first that has a thing wins.
 struct DataFolders {
@@ -17,4 +17,4 @@ struct DataFolders {
 /// @param installed where the installation was told to put it
 DataFolders find_data_folders(const std::filesystem::path& beside, const std::filesystem::path& installed);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

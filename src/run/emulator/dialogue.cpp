@@ -10,7 +10,7 @@
 #include "receiver/protocol/ubx_names.hpp"
 #include "run/fault/known_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr StreamProtocols client_protocols{};
@@ -115,4 +115,4 @@ void Dialogue::client_believes(std::size_t wire, const ClientBelief& belief, Gps
     listener_.belief({now, station_, wire, belief.trusts, belief.reason});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

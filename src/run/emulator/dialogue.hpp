@@ -11,7 +11,7 @@
 #include "run/fault/run_observer.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What a message is called: "CFG-VALSET", "UBX-0F-01" for one that no document names, "GGA", "PUBX,41", "RTCM-1005",
 /// "sso".
@@ -56,4 +56,4 @@ private:
     std::vector<Ends> ends_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

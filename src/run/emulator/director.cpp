@@ -13,7 +13,7 @@
 #include "run/emulator/timing.hpp"
 #include "run/fault/timeline_keys.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 bool CommandQueue::push(Command command) {
     const std::scoped_lock lock(mutex_);
@@ -315,4 +315,4 @@ void Director::show(const BeliefSeen& seen) {
         observer->on_belief(seen);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -14,7 +14,7 @@
 #include "run/fault/timeline.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 class Pacer;
 class Station;
@@ -99,4 +99,4 @@ bool begins_new_fault(const Command& command);
 /// "jamming", where that name is taken "jamming 2", and so on: what a new fault is called.
 std::string free_name(const std::string& wanted, const std::function<bool(const std::string&)>& is_taken);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

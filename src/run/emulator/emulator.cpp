@@ -5,7 +5,7 @@
 #include "base/core/threads.hpp"
 #include "detail/recorded_files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr Nanoseconds no_time{0};
@@ -233,4 +233,4 @@ std::vector<std::string> probe_environment(const Emulator& emulator) {
     return {"SKYLOOP_PORT=" + description.substr(0, description.rfind(" ("))};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "run/emulator/station.hpp"
 #include "run/emulator/timing.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The state of a run after an epoch of one receiver, for progress displays.
 struct Status {
@@ -108,4 +108,4 @@ private:
 /// address. Empty: there is none.
 std::vector<std::string> probe_environment(const Emulator& emulator);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

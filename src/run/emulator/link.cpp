@@ -7,7 +7,7 @@
 
 #include "base/core/bytes.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::uint32_t any_baud = 9600;    // of a garbler that is never used
@@ -196,4 +196,4 @@ std::optional<GpsTime> FaultyWire::next_at(GpsTime now) const {
     return next;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

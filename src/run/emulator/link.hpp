@@ -15,7 +15,7 @@
 #include "wire/transport/line_garbler.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What has crossed one wire.
 struct LinkCounters {
@@ -136,4 +136,4 @@ private:
     bool break_begins_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "base/core/threads.hpp"
 #include "run/fault/command.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::array<std::string_view, 3> clock_names{"realtime", "follow", "lock_step"};
@@ -366,4 +366,4 @@ std::vector<FeedReport> LiveFeeds::reports() const {
     return reports;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "run/feed/truth_feed.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// How old the newest sample of a source was at the epochs of a run: what had to be extrapolated.
 struct SampleAge {
@@ -97,4 +97,4 @@ private:
     std::vector<std::string> news_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -16,7 +16,7 @@
 #include "world/rinex/almanac_file.hpp"
 #include "world/rinex/navigation_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 struct ReadRecords {
@@ -236,4 +236,4 @@ Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, 
     return loaded;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -13,7 +13,7 @@
 #include "world/scene/generated_city.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::string_view terrain_material = "medium-ground";
@@ -297,4 +297,4 @@ RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double ep
     return settings;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

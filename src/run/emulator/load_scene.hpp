@@ -11,7 +11,7 @@
 #include "world/city/city_cache.hpp"
 #include "world/propagation/ray_traced_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Above the frame of a scene that has no origin stands the antenna at the start of the trajectory, as a pedestrian's.
 inline constexpr Metres antenna_above_scene{1.5};
@@ -75,4 +75,4 @@ std::string scene_description(const std::vector<std::string>& names, const Urban
 /// What the scene does to the signals in the scenario's model.
 RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double epochs_per_second);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

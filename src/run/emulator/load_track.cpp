@@ -14,7 +14,7 @@
 #include "motion/trajectory/recorded_path.hpp"
 #include "motion/trajectory/route.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // In a run that begins at `start`, were nothing delayed or skipped.
@@ -330,4 +330,4 @@ Result<LoadedTrack> load_generated(GeneratedSettings& path, std::uint64_t run_se
     return loaded;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

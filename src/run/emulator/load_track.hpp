@@ -10,7 +10,7 @@
 #include "base/geo/geoid.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What there is to say of a path that was loaded; all empty where the scenario has none.
 struct LoadedTrack {
@@ -35,4 +35,4 @@ Result<LoadedTrack> load_generated(GeneratedSettings& path, std::uint64_t run_se
 /// Whether a path of the scenario ends the run: end = "stop".
 bool ends_with_its_path(const Scenario& scenario);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

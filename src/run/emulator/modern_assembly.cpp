@@ -9,7 +9,7 @@
 #include "world/propagation/modern_effects.hpp"
 #include "world/rinex/ionex_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 std::filesystem::path acting_ionosphere_maps(const Scenario& scenario) {
     if (const auto& model = scenario.model.sensor_model) {
@@ -94,4 +94,4 @@ MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationS
             NavigationEngine(settings.navigation, knowledge)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

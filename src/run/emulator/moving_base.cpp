@@ -4,7 +4,7 @@
 
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 std::array<GaussMarkov, 3> axes(const GaussMarkovParameters& parameters, std::uint64_t seed, std::string_view name) {
@@ -64,4 +64,4 @@ std::optional<RelativePosition> MovingBase::relate(const Trace& base, const Trac
     return relative;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "world/flow/epoch.hpp"
 #include "world/flow/trace.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// How well a rover knows its vector to the base.
 struct BaselineAccuracy {
@@ -47,4 +47,4 @@ private:
     std::optional<GpsTime> last_, both_since_;     // the base's last epoch; the first of those that both had a fix at
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -8,7 +8,7 @@
 #include "run/scenario/scenario.hpp"
 #include "world/gnss/navigation_data.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Reads the files of `sky.navigation`, of which there is at least one. load_navigation() adds what a run makes of
 /// them. Fails with `input` for files that hold nothing to use.
@@ -17,4 +17,4 @@ namespace skyloop {
 Result<NavigationData> read_navigation_files(const Scenario& scenario, GpsTime near,
                                              std::vector<std::string>& warnings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

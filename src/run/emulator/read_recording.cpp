@@ -15,7 +15,7 @@
 #include "base/core/bytes.hpp"
 #include "base/core/files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The numbers of a line, one space between them; nothing when there are others than `Count` or anything else.
 template <std::size_t Count>
@@ -191,4 +191,4 @@ Result<std::vector<HeardBytes>> read_repeated_input(const std::filesystem::path&
     return all;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -13,7 +13,7 @@
 #include "base/time/gps_time.hpp"
 #include "firmware/port_id.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Bytes that left at one instant.
 struct RecordedWrite {
@@ -62,4 +62,4 @@ struct HeardBytes {
 Result<std::vector<HeardBytes>> read_repeated_input(const std::filesystem::path& folder,
                                                     const std::vector<firmware::PortId>& ports);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

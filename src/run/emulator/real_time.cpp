@@ -14,7 +14,7 @@
 #include <cstring>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // Above what has no deadline, below the kernel's own interrupt threads (50).
@@ -121,4 +121,4 @@ DeadlineGrants prepare_for_deadlines() {
     return grants;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 enum class ThreadPriority {
     realtime,  ///< SCHED_FIFO: runs as soon as it wakes
@@ -42,4 +42,4 @@ struct DeadlineGrants {
 /// limit (RLIMIT_MEMLOCK) could refuse a later allocation, which would end the program in the middle of a run.
 DeadlineGrants prepare_for_deadlines();
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "wire/actuator/actuator_uri.hpp"
 #include "wire/transport/open_transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 Result<firmware::BoardProfile> board_of(const ReceiverEntry& entry, const DataFolders& data) {
@@ -316,4 +316,4 @@ Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std:
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -14,7 +14,7 @@
 #include "run/emulator/run_files.hpp"
 #include "run/scenario/board_files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 namespace fs = std::filesystem;
@@ -149,4 +149,4 @@ std::vector<InputFile> input_files(const Scenario& scenario, const DataFolders& 
     return files;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

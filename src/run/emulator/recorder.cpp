@@ -10,7 +10,7 @@
 #include "base/core/files.hpp"
 #include "detail/recording_formats.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 Recorder::Recorder() = default;
 Recorder::~Recorder() = default;
@@ -150,4 +150,4 @@ std::optional<Error> Recorder::failure() const {
     return summary_failure_;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

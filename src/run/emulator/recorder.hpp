@@ -14,7 +14,7 @@
 #include "world/flow/trace.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 class RinexRecording;
 struct RinexRecordingSetup;
@@ -72,4 +72,4 @@ private:
     std::optional<Error> summary_failure_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "world/gnss/constants.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
@@ -223,4 +223,4 @@ void RinexRecording::record(const Trace& trace, const NavigationSource& broadcas
     if (!trace.epoch.observations.signals.empty()) observations_.write(writer_.epoch(trace.epoch.observations));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

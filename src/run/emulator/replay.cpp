@@ -6,7 +6,7 @@
 
 #include "run/emulator/timing.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr Nanoseconds grace{500'000'000};     // for clients to read the rest
@@ -81,4 +81,4 @@ void Replay::play(const Stop& stop) {
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

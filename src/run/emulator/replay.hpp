@@ -10,7 +10,7 @@
 #include "run/emulator/read_recording.hpp"
 #include "run/emulator/timing.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Plays recorded ports, each onto a wire of its own. What clients send is read and forgotten.
 class Replay {
@@ -51,4 +51,4 @@ private:
     std::uint64_t writes_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 
 #include "base/core/files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 Result<ClaimedFolder> ClaimedFolder::claim(const std::filesystem::path& path) {
     ClaimedFolder folder;
@@ -129,4 +129,4 @@ void StateFile::keep(const std::string& text, GpsTime now) {
     text_ = text;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

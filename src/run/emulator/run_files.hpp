@@ -13,7 +13,7 @@
 #include "base/time/gps_time.hpp"
 #include "wire/transport/file_descriptor.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Makes a folder and holds it against other runs, in this program and in others, until its owner goes. It changes
 /// nothing in the folder. One that was made here and is still empty then is taken away again.
@@ -87,4 +87,4 @@ private:
     std::optional<Error> failure_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -6,7 +6,7 @@
 
 #include "base/time/utc_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -163,4 +163,4 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
     return summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

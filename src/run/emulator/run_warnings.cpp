@@ -11,7 +11,7 @@
 #include "firmware/state_tracker.hpp"
 #include "run/fault/fault_kind.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using AtmosphereKeys = std::span<const std::string_view>;
@@ -226,4 +226,4 @@ std::optional<std::string> limit_warning(const PathUnderLimits& path) {
                        which_limit(path.board, model, fix));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

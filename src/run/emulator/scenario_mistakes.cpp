@@ -12,7 +12,7 @@
 #include "run/scenario/timeline_check.hpp"
 #include "world/gnss/navigation_data.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -108,4 +108,4 @@ Error with_other_mistakes(const Error& first, const Scenario& asked, const DataF
     return found.joined();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -4,7 +4,7 @@
 
 #include "world/propagation/propagation_effect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 void make_fix(ErrorModel& model, Trace& trace) { trace.epoch.fix = model.fix(trace.truth, trace.sky, trace.arrivals); }
@@ -66,4 +66,4 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaul
     return trace;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -19,7 +19,7 @@
 #include "world/propagation/ray_traced_scene.hpp"
 #include "world/sky/observe_sky.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A receiver that measures what arrives and solves it: the modern profile.
 struct MeasuringReceiver {
@@ -66,4 +66,4 @@ private:
     SubframeReception subframes_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

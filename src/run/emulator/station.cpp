@@ -5,7 +5,7 @@
 #include "run/emulator/antenna_path.hpp"
 #include "run/emulator/wires.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using firmware::PortId;
@@ -266,4 +266,4 @@ void Station::finish(GpsTime now) {
     if (parts_.power) parts_.power->finish();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

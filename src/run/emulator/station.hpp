@@ -20,7 +20,7 @@
 #include "run/fault/active_faults.hpp"
 #include "wire/actuator/power_switch.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The line speed of a receiver's port, bit/s; nothing for a port that has none.
 PortSpeed port_speed(const firmware::Receiver& receiver, firmware::PortId port);
@@ -150,4 +150,4 @@ private:
     RunCounts counts_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 
 #include "run/emulator/timing.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::int64_t watched_interval_ns = 100'000'000, unwatched_interval_ns = 1'000'000'000;
@@ -276,4 +276,4 @@ std::shared_ptr<const StatusSnapshot> StatusBoard::latest() const {
     return latest_;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -13,7 +13,7 @@
 #include "run/emulator/status_snapshot.hpp"
 #include "run/fault/run_observer.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What the board asks for when it makes a snapshot, by the loop's thread. Those that are empty are not asked.
 struct StatusSources {
@@ -113,4 +113,4 @@ private:
     std::shared_ptr<const StatusSnapshot> latest_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

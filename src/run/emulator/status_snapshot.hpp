@@ -17,7 +17,7 @@
 #include "world/flow/fix.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// One wire of a receiver.
 struct WireStatus {
@@ -128,4 +128,4 @@ struct StatusSnapshot {
     std::vector<std::shared_ptr<const EventLine>> events;       ///< the last ones, ascending
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <ctime>
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -105,4 +105,4 @@ void LatenessHistogram::add(Nanoseconds lateness) {
 
 double LatenessHistogram::mean_ms() const { return epochs_ == 0 ? 0 : sum_ms_ / static_cast<double>(epochs_); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "base/core/threads.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Epochs stand on a grid of GPS time: where the navigation period divides the week, the time of week is a multiple of
 /// it. A period that changes gives a new grid, from the next epoch on (RECEIVER.md 4.4, 4.6): the first instant of the
@@ -136,4 +136,4 @@ private:
     double sum_ms_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

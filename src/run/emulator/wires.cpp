@@ -11,7 +11,7 @@
 #include "wire/actuator/actuator_uri.hpp"
 #include "wire/transport/open_transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using firmware::BoardProfile;
@@ -179,4 +179,4 @@ void keep_scripted_clients(Scenario& scenario) {
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

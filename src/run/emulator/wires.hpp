@@ -13,7 +13,7 @@
 #include "run/scenario/scenario.hpp"
 #include "wire/transport/cdc_acm_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A wire as it was asked for: "uart2=pty:LINK".
 struct WireRequest {
@@ -63,4 +63,4 @@ bool has_scripted_client(const Scenario& scenario);
 /// is left without one writes to nowhere, where it would get a pty.
 void keep_scripted_clients(Scenario& scenario);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 void append(std::vector<firmware::ReceiverEvent>& events, const std::vector<firmware::ReceiverEvent>& more) {
@@ -143,4 +143,4 @@ firmware::FirmwareFaults ActiveFaults::firmware(GpsTime now) const { return coll
 WireConditions ActiveFaults::wire(GpsTime now) const { return collected(&Fault::wire, now); }
 PaceConditions ActiveFaults::pace(GpsTime now) const { return collected(&Fault::pace, now); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -7,7 +7,7 @@
 
 #include "run/fault/fault_kind.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// When an occurrence works, and how it comes and goes.
 struct FaultSpan {
@@ -65,4 +65,4 @@ private:
     std::vector<firmware::ReceiverEvent> events_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "run/fault/fault_kind.hpp"
 #include "run/fault/timeline_keys.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using Verb = CommandVerb;
@@ -253,4 +253,4 @@ Error mistakes_error(const std::vector<ParameterMistake>& mistakes) {
     return error;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

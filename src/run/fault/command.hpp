@@ -14,7 +14,7 @@
 #include "run/fault/parameters.hpp"
 #include "run/fault/timeline.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The commands of this version.
 enum class CommandVerb {
@@ -95,4 +95,4 @@ std::optional<std::string> receiver_mistake(const Command& command, std::span<co
 /// All mistakes in one line: "'loss' is 7; expected …".
 Error mistakes_error(const std::vector<ParameterMistake>& mistakes);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

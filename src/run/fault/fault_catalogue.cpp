@@ -5,7 +5,7 @@
 #include "detail/fault_catalogue.hpp"
 #include "run/fault/fault_kind.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 const std::vector<FaultKind>& fault_kinds() {
     static const std::vector<FaultKind> kinds = [] {
@@ -74,4 +74,4 @@ Position<Ecef> ToldPlace::seen_from(const TruthState& truth) const {
     return to_ecef(place);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

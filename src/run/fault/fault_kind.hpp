@@ -24,7 +24,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What faults have done to the counts of one receiver. A count that has slipped stays wrong when its fault is over,
 /// until the receiver counts the signal anew.
@@ -147,4 +147,4 @@ std::string fault_text(const FaultKind& kind);
 /// Every kind, command and key of the timeline, as a page of Markdown.
 std::string fault_catalogue_markdown();
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -6,7 +6,7 @@
 #include "run/fault/command.hpp"
 #include "run/fault/timeline_keys.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 bool has_limit(double limit) { return std::abs(limit) < ParameterSpec::unlimited; }
@@ -130,4 +130,4 @@ std::string fault_catalogue_markdown() {
            parameter_table(timeline_keys());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

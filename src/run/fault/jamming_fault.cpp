@@ -8,7 +8,7 @@
 #include "world/gnss/constants.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // Of a signal of nominal power in an isotropic antenna: −157 dBW over N0 of −204.6 dBW/Hz, less 2.5 dB of
@@ -205,4 +205,4 @@ constexpr FaultKind jamming_fault{
     "supply on board.",
     jamming_parameters + signal_selector, make_jamming};
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

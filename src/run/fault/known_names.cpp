@@ -10,7 +10,7 @@
 #include "firmware/septentrio/settings.hpp"
 #include "receiver/protocol/ubx_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 struct CommandName {
@@ -175,4 +175,4 @@ std::optional<std::string> satellite_mistake(SatelliteId satellite) {
                        numbers.first, letter, numbers.last, constellation_title(satellite.constellation));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

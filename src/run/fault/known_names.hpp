@@ -8,7 +8,7 @@
 
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The mnemonic of a command by either of its names, in letters of any case: "sso" for "setSBFOutput". Nothing for what
 /// is no command.
@@ -35,4 +35,4 @@ std::optional<std::string> message_name_mistake(std::string_view wanted);
 /// What is wrong with a satellite that its system does not have, or nothing.
 std::optional<std::string> satellite_mistake(SatelliteId satellite);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

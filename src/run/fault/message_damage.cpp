@@ -9,7 +9,7 @@
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // Longer than the gaps that drivers leave within a message, shorter than what clients wait for an answer.
@@ -298,4 +298,4 @@ std::optional<GpsTime> MessageDamage::next_at() const {
     return next;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "base/core/number_text.hpp"
 #include "base/core/words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using Accepted = tl::expected<ParameterValue, ParameterMistake>;
@@ -206,4 +206,4 @@ CheckedParameters check_parameters(std::span<const ParameterSpec> specs,
     return checked;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "base/core/result.hpp"
 #include "base/geo/geodetic.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A value as scenario files, control messages and the command line give it.
 using ParameterValue = std::variant<double, bool, std::string, std::vector<double>, std::vector<std::string>>;
@@ -187,4 +187,4 @@ struct CheckedParameters {
 CheckedParameters check_parameters(std::span<const ParameterSpec> specs,
                                    const std::map<std::string, ParameterValue, std::less<>>& given);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -4,7 +4,7 @@
 
 #include "run/fault/timeline.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 bool concerns(const TimelineOrder& order, const TimelineEntry& entry) {
@@ -114,4 +114,4 @@ std::vector<std::string> timeline_text(const std::vector<TimelineEntry>& entries
     return lines;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

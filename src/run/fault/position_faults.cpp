@@ -11,7 +11,7 @@
 #include "base/core/random.hpp"
 #include "detail/fault_catalogue.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // Farther is no error of a solution.
@@ -238,4 +238,4 @@ std::vector<FaultKind> position_fault_kinds() {
     return all_kinds_of(FaultLayer::solution, {place_error_kinds, motion_and_quality_kinds, report_fault_kinds()});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

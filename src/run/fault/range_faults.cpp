@@ -8,7 +8,7 @@
 #include "run/fault/fault_kind.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 void LostCycles::follow(const Observations& observations) {
     std::map<Key, Count> kept;
@@ -167,4 +167,4 @@ constexpr auto range_kinds = std::to_array<FaultKind>({
 
 std::vector<FaultKind> range_fault_kinds() { return all_kinds_of(FaultLayer::signals, {range_kinds}); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -23,7 +23,7 @@
 #include "receiver/protocol/ubx_names.hpp"
 #include "run/fault/parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The message of a name, in letters of any case: "MON-VER", "CFG-VALSET", "GGA", "PUBX,41", "RTCM-1005", or
 /// "UBX-0F-01" by class and id. Sentences have the ids of u-blox (classes F0, F1). Fails with `usage`; the nearest name
@@ -358,4 +358,4 @@ std::vector<FaultKind> receiver_fault_kinds() {
     return all_kinds_of(FaultLayer::receiver, {switched_kinds, slowness_kinds});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

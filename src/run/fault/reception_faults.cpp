@@ -5,7 +5,7 @@
 #include "detail/fault_catalogue.hpp"
 #include "detail/signal_selector.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double fastest_echo = 0.5;  // m/s by which an echo's excess changes: that of a reflector one drives along
@@ -173,4 +173,4 @@ std::vector<FaultKind> reception_fault_kinds() {
     return all_kinds_of(FaultLayer::signals, {reception_kinds, {&jamming_fault, 1}, {&multipath_burst_fault, 1}});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 
 #include "detail/fault_catalogue.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using firmware::NavigationState;
@@ -301,4 +301,4 @@ std::vector<FaultKind> report_fault_kinds() {
                         {untrue_report_kinds, rtk_kinds, pair_and_count_kinds, epoch_fault_kinds});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -4,7 +4,7 @@
 
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // What the receiver tracks of a satellite; a sensor model measures nothing, and its C/N0 is that of its report.
@@ -59,4 +59,4 @@ EnuError enu_error(const TruthState& truth, const Fix& fix) {
     return {Metres(error.x()), Metres(error.y()), Metres(error.z())};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -20,7 +20,7 @@
 #include "world/flow/trace.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// An epoch of one receiver, after its firmware has seen it. Valid during the call.
 struct EpochSeen {
@@ -125,4 +125,4 @@ std::vector<SatelliteSeen> satellites_seen(const EpochSeen& seen);
 /// Fix − truth. Only for a fix that has a position.
 EnuError enu_error(const TruthState& truth, const Fix& fix);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "world/gnss/orbit.hpp"
 #include "world/gnss/shell_ionosphere.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // What a satellite's clock is ahead of what it broadcasts: s, by the time since the start.
@@ -213,4 +213,4 @@ std::vector<FaultKind> satellite_fault_kinds() {
     return all_kinds_of(FaultLayer::signals, {satellite_kinds, range_fault_kinds()});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "run/fault/fault_kind.hpp"
 #include "run/fault/known_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 template <class T>
@@ -142,4 +142,4 @@ void ChosenSatellites::choose(const Observations& observations, const SkyView* s
 
 bool ChosenSatellites::has(SatelliteId satellite) const { return contains(satellites_, satellite); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

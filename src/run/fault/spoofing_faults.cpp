@@ -8,7 +8,7 @@
 #include "world/gnss/constants.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 RangeAndRate light_time_range(const SatelliteInView& satellite, const AntennaMotion& antenna) {
     const Eigen::Vector3d& sent_from = satellite.position_at_transmission.vector();
@@ -293,4 +293,4 @@ constexpr auto spoofing_kinds = std::to_array<FaultKind>({
 
 std::vector<FaultKind> spoofing_fault_kinds() { return all_kinds_of(FaultLayer::signals, {spoofing_kinds}); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

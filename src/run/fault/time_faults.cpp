@@ -8,7 +8,7 @@
 #include "base/time/utc_time.hpp"
 #include "detail/fault_catalogue.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using firmware::NavigationState;
@@ -185,4 +185,4 @@ std::vector<FaultKind> time_fault_kinds() {
     return all_kinds_of(FaultLayer::solution, {calendar_kinds, clock_kinds, unknown_time_kinds});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "receiver/protocol/mavlink.hpp"
 #include "run/fault/known_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // A period shorter than this would make more events than a run has instants.
@@ -244,4 +244,4 @@ void Timeline::act(std::size_t index, GpsTime now) {
     plan_from(index, now);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

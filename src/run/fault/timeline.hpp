@@ -16,7 +16,7 @@
 #include "base/geo/geodetic.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A state of the run that makes something begin; all that is given must hold at once, at an epoch of the first
 /// receiver, or when the client's message comes.
@@ -170,4 +170,4 @@ std::vector<bool> hang_on_the_run(const std::vector<TimelineEntry>& entries);
 /// Lines for people: what is known of each entry before the run, in the order of time.
 std::vector<std::string> timeline_text(const std::vector<TimelineEntry>& entries, const TimelineSpan& run);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -11,7 +11,7 @@
 #include "receiver/protocol/mavlink.hpp"
 #include "run/fault/known_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double longest_s = 100 * 366.0 * 86400;  // a run's span stays far inside 64-bit nanoseconds
@@ -237,4 +237,4 @@ std::vector<std::pair<std::size_t, ParameterMistake>> timeline_mistakes(const st
     return mistakes;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -11,7 +11,7 @@
 #include "run/fault/parameters.hpp"
 #include "run/fault/timeline.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Of faults; a command has those that timeline_keys_of_commands() gives.
 std::span<const ParameterSpec> timeline_keys();
@@ -32,4 +32,4 @@ std::optional<ParameterMistake> entry_name_mistake(const std::string& name);
 /// @return by place in the list
 std::vector<std::pair<std::size_t, ParameterMistake>> timeline_mistakes(const std::vector<TimelineEntry>& entries);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

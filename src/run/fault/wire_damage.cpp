@@ -15,7 +15,7 @@
 #include "base/time/gps_time.hpp"
 #include "detail/message_damage.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// First in, first out. Where the throughput is limited each byte takes its time, 1/rate, one after the other; the
 /// share of that time that has passed is kept when the rate changes. What has left by an instant does not depend on
@@ -375,4 +375,4 @@ std::optional<GpsTime> WireDamage::next_at() const { return state_->next_at(); }
 std::size_t WireDamage::waiting() const { return state_->waiting(); }
 WireDamageCounts WireDamage::counts() const { return state_->counts(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -14,7 +14,7 @@
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Bursts of random bytes between two messages.
 struct GarbageBursts {
@@ -114,4 +114,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "detail/fault_catalogue.hpp"
 #include "firmware/firmware_faults.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // Worsens one direction by a strength from 0 to 1.
@@ -228,4 +228,4 @@ std::vector<FaultKind> wire_fault_kinds() {
     return all_kinds_of(FaultLayer::wire, {gradual_wire_kinds, switched_wire_kinds});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

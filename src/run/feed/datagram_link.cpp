@@ -6,7 +6,7 @@
 #include "base/core/threads.hpp"
 #include "detail/feed_link.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::size_t most_datagram_peers = 8;
@@ -207,4 +207,4 @@ Result<std::unique_ptr<FeedLink>> open_datagram_relay(const FeedAddress& address
     return std::make_unique<DatagramRelay>(std::move(*near), std::move(*far), address.hears_target, hearer);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

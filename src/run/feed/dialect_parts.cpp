@@ -7,7 +7,7 @@
 #include "base/core/number_text.hpp"
 #include "detail/dialect_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double fastest_mps = 12000;  // FEEDS.md 3.1
@@ -158,4 +158,4 @@ void SourceLines::clear() {
 
 std::size_t SourceLines::take_thrown_away() { return std::exchange(thrown_away_, 0); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

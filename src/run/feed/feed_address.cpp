@@ -9,7 +9,7 @@
 #include "base/core/words.hpp"
 #include "run/feed/truth_feed.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // What stands behind a scheme's colon.
@@ -227,4 +227,4 @@ Result<FeedAddress> parse_feed_address(std::string_view text) {
                             meant, fmt::join(names, ", ")));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

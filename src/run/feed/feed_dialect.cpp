@@ -5,7 +5,7 @@
 
 #include "detail/dialect_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // One dialect.
@@ -43,4 +43,4 @@ bool knows_steps(std::string_view dialect) {
                        [&](const NamedDialect& known) { return known.name == dialect && known.steps; });
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -18,7 +18,7 @@
 #include "motion/trajectory/trajectory.hpp"
 #include "run/fault/command.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Lock-step: the run may go on to a time of the source's clock.
 struct FeedMilestone {
@@ -96,4 +96,4 @@ std::unique_ptr<FeedDialect> make_dialect(std::string_view name, const FeedConte
 /// Whether its sources can lead a run in lock-step: it knows FeedMilestone.
 bool knows_steps(std::string_view dialect);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -7,7 +7,7 @@
 #include "base/core/threads.hpp"
 #include "detail/feed_hearer.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 std::size_t FeedInbox::put(std::vector<FeedItem>& items) {
     if (items.empty()) return 0;
@@ -153,4 +153,4 @@ void FeedHearer::tell(FeedNewsDesk::Kind kind, std::string sentence) {
     desk_.news.tell(kind, std::move(sentence), steady_clock_ns());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

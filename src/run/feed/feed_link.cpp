@@ -12,7 +12,7 @@
 #include "base/core/threads.hpp"
 #include "detail/feed_link.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr int feed_receive_buffer = 4 << 20;  // FEEDS.md 3.1: at least 1 MiB; some thousand datagrams
@@ -263,4 +263,4 @@ void StreamConnector::lost(std::int64_t now_ns, bool lasted) {
     backoff_.failed(now_ns);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

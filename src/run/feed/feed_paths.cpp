@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::size_t most_items_at_once = 4096;  // a flood must not hold the loop
@@ -307,4 +307,4 @@ void FeedPaths::look_at_rate(std::int64_t now_ns) {
         fmt::format("the source runs at {:.2f} of real time; expected 1; clock = \"follow\" keeps its time", *rate));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -18,7 +18,7 @@
 #include "detail/dialect_parts.hpp"
 #include "detail/motion_filter.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 // A finite number; nothing when it is not there or anything else.
 inline std::optional<double> source_json_number(const nlohmann::json& object, std::string_view key) {
@@ -290,4 +290,4 @@ std::unique_ptr<FeedDialect> make_gpsd_dialect(const FeedContext& context) {
     return std::make_unique<GpsdDialect>(context);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "detail/json_statement.hpp"
 #include "motion/trajectory/live_path.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::size_t longest_json_line = 65536;
@@ -228,4 +228,4 @@ std::unique_ptr<FeedDialect> make_json_dialect(const FeedContext& context) {
     return std::make_unique<JsonDialect>(context);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

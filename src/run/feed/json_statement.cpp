@@ -12,7 +12,7 @@
 #include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double longest_source_s = 4e9;
@@ -296,4 +296,4 @@ Result<Command> statement_event(const FeedJson& statement) {
     return checked_command(std::move(members), "feed");
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "detail/dialect_parts.hpp"
 #include "detail/motion_filter.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double generic_foot_m = 0.3048;
@@ -194,4 +194,4 @@ std::unique_ptr<FeedDialect> make_jsbsim_dialect(const FeedContext& context) {
     return std::make_unique<JsbsimDialect>(context);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

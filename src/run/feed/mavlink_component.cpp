@@ -9,7 +9,7 @@
 #include "receiver/protocol/mavlink.hpp"
 #include "run/fault/command.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // A whole number that a float of a command holds; nothing for NaN, infinities, fractions and what no enum has.
@@ -196,4 +196,4 @@ MavlinkResult MavlinkComponent::inject(float unit, float type, float instance, T
     return injector_.inject(unit, type, instance);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -22,7 +22,7 @@
 #include "run/fault/command.hpp"
 #include "run/fault/timeline.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 inline constexpr std::uint16_t mavlink_inject_failure = 420;  ///< MAV_CMD_INJECT_FAILURE
 inline constexpr int failure_unit_gps = 4;                    ///< FAILURE_UNIT_SENSOR_GPS
@@ -115,4 +115,4 @@ private:
     std::uint8_t sequence_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -19,7 +19,7 @@
 #include "receiver/protocol/mavlink.hpp"
 #include "run/feed/mavlink_component.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 // Cuts bytes into frames. Frames of messages that are not known are passed over by their length where another frame or
 // nothing follows them; anything else is searched byte by byte. State: at most the beginning of one frame.
@@ -287,4 +287,4 @@ std::unique_ptr<FeedDialect> make_px4_dialect(const FeedContext& context) {
     return std::make_unique<Px4Dialect>(context);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

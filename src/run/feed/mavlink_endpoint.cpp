@@ -15,7 +15,7 @@
 #include "detail/feed_link.hpp"
 #include "run/feed/mavlink_component.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -176,4 +176,4 @@ std::uint16_t MavlinkEndpoint::port() const { return impl_->port(); }
 
 std::string MavlinkEndpoint::description() const { return impl_->description(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "base/core/result.hpp"
 #include "run/feed/mavlink_component.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Where MAVLink is spoken.
 struct MavlinkAddress {
@@ -57,4 +57,4 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

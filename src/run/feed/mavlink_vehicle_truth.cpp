@@ -8,7 +8,7 @@
 
 #include "detail/mavlink_vehicle_truth.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double boot_gain = 0.1, boot_step_ns = 100e6;
@@ -274,4 +274,4 @@ LocalMap MavlinkVehicleTruth::native_map() const {
     return autopilot_ == autopilot_ardupilot ? LocalMap::ardupilot_flat : LocalMap::tangent;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 void AxisFilter::start(double position, double sigma) {
     constexpr double start_speed = 30, start_acceleration = 10;  // 1 σ
@@ -61,4 +61,4 @@ void MotionFilter::smooth(TruthSample& sample, std::int64_t time_ns) {
     if (sample.velocity || seen_ >= 2) sample.velocity = Velocity<Ecef>(smooth_velocity);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "motion/trajectory/source_clock.hpp"
 #include "receiver/protocol/field_list.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // Eighteen little-endian doubles. The frames of gyros, accelerations and quaternion differ between simulators: they are
@@ -219,4 +219,4 @@ std::unique_ptr<FeedDialect> make_flightgear_dialect(const FeedContext& context)
     return std::make_unique<FlightgearDialect>(context);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "receiver/protocol/ubx_frame.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // A receiver's stream, of which messages of one kind are taken.
@@ -257,4 +257,4 @@ std::unique_ptr<FeedDialect> make_nmea_dialect(const FeedContext& context) {
     return std::make_unique<NmeaDialect>(context);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

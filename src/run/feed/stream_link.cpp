@@ -7,7 +7,7 @@
 #include "detail/feed_link.hpp"
 #include "wire/transport/serial.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::size_t most_stream_clients = 8;
@@ -297,4 +297,4 @@ Result<std::unique_ptr<FeedLink>> open_stream_relay(const FeedAddress& address, 
     return std::make_unique<StreamRelay>(std::move(*socket), std::move(*peers), address.hears_target, hearer);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

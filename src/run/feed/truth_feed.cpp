@@ -22,7 +22,7 @@
 #include "detail/feed_link.hpp"
 #include "detail/feed_paths.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Waits for a source, lets it be heard, hands over what it says and answers it.
 class FeedWorker {
@@ -255,4 +255,4 @@ std::string TruthFeed::description() const { return impl_->worker_.description()
 
 std::uint16_t TruthFeed::port() const { return impl_->worker_.port(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

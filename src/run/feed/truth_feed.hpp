@@ -17,7 +17,7 @@
 #include "run/fault/command.hpp"
 #include "run/feed/feed_dialect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// How a source is reached. By udp_request we speak first, from a port that others know, and hear the host at whichever
 /// port it answers from.
@@ -118,4 +118,4 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

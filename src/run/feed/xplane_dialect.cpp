@@ -12,7 +12,7 @@
 #include "detail/motion_filter.hpp"
 #include "receiver/protocol/field_list.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double xplane_foot_m = 0.3048;
@@ -251,4 +251,4 @@ std::unique_ptr<FeedDialect> make_xplane_dialect(const FeedContext& context) {
     return std::make_unique<XplaneDialect>(context);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/other_protocols.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -305,4 +305,4 @@ std::unique_ptr<EpochWriter> make_epoch_writer(const OutputSettings& settings) {
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

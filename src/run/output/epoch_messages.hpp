@@ -17,7 +17,7 @@
 #include "run/fault/run_observer.hpp"
 #include "run/output/output_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What a line tells, copied out of the loop.
 struct EpochRecord {
@@ -65,4 +65,4 @@ public:
 
 std::unique_ptr<EpochWriter> make_epoch_writer(const OutputSettings& settings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

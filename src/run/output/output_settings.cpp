@@ -11,7 +11,7 @@
 #include "base/core/number_text.hpp"
 #include "base/core/words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::array<std::string_view, 4> way_names{"udp", "tcp", "tcp-to", "file"};
@@ -162,4 +162,4 @@ Result<std::vector<bool>> told_receivers(const OutputSettings& settings, const s
     return told;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -14,7 +14,7 @@
 #include "base/core/result.hpp"
 #include "wire/transport/tcp.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// As what an epoch is told.
 enum class OutputFormat {
@@ -68,4 +68,4 @@ std::string foreign_option(OutputFormat format, std::string_view key);
 /// Which of these receivers an output tells. Fails with `usage` when it names another.
 Result<std::vector<bool>> told_receivers(const OutputSettings& settings, const std::vector<std::string>& names);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -17,7 +17,7 @@
 #include "wire/transport/file.hpp"
 #include "wire/transport/tcp_client.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using std::chrono::milliseconds;
@@ -264,4 +264,4 @@ std::vector<std::string> RunOutput::take_news() { return impl_->take_news(); }
 std::string RunOutput::failure() const { return impl_->failure(); }
 std::string RunOutput::description() const { return impl_->description(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -13,7 +13,7 @@
 #include "run/output/output_settings.hpp"
 #include "wire/transport/message_sink.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What an output needs of the run.
 struct OutputParts {
@@ -66,4 +66,4 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -14,7 +14,7 @@
 #include "detail/scenario_keys.hpp"
 #include "detail/table_reader.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 namespace fs = std::filesystem;
@@ -289,4 +289,4 @@ Result<std::vector<DeviceProfile>> load_devices(std::span<const fs::path> direct
     return all;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

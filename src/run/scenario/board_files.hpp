@@ -15,7 +15,7 @@
 #include "firmware/board_profile.hpp"
 #include "wire/devices/device_profile.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Reads the TOML text of one receiver profile.
 /// @param name what messages call the file, "boards/receivers/ublox-m8.toml"; its stem is the profile's name
@@ -47,4 +47,4 @@ Result<std::vector<DeviceProfile>> read_devices(std::string_view toml_text, std:
 /// read_devices(), or two devices of one name or that nothing tells apart; with `outside` when a file cannot be read.
 Result<std::vector<DeviceProfile>> load_devices(std::span<const std::filesystem::path> directories);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -8,7 +8,7 @@
 #include "firmware/config/config_handler.hpp"
 #include "firmware/septentrio/settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using firmware::BoardProfile;
@@ -284,4 +284,4 @@ void read_board_nmea(TableReader& nmea, firmware::BoardProfile& board) {
     nmea.table("sentences", [&](TableReader& rates) { read_board_sentences(rates, board.sentences); });
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

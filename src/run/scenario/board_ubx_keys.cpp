@@ -11,7 +11,7 @@
 #include "firmware/config/config_keys.hpp"
 #include "firmware/config/config_store.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using firmware::BoardProfile;
@@ -223,4 +223,4 @@ std::map<std::uint32_t, std::uint64_t> read_config_items(TableReader& config, st
     return items;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -7,7 +7,7 @@
 #include "detail/scenario_keys.hpp"
 #include "detail/toml_values.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double most_runs = static_cast<double>(most_campaign_runs);
@@ -176,4 +176,4 @@ void read_campaign(TableReader& top, std::optional<CampaignSettings>& campaign) 
     });
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// More runs than this are refused: their plan is held in memory.
 inline constexpr std::uint64_t most_campaign_runs = 1'000'000;
@@ -78,4 +78,4 @@ struct CampaignSettings {
     std::optional<CampaignVehicle> vehicle{};
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

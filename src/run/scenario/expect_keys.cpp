@@ -7,7 +7,7 @@
 #include "run/fault/known_names.hpp"
 #include "run/verdict/expectation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double longest_probe_s = 1e6;
@@ -115,4 +115,4 @@ void read_expectations(TableReader& top, Scenario& scenario) {
     });
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

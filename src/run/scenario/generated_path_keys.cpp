@@ -4,7 +4,7 @@
 
 #include "detail/trajectory_kinds.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 void read_seed(TableReader& table, GeneratedPath& path) {
@@ -129,4 +129,4 @@ void read_sequence(TableReader& table, PlaceReader& places, TrajectorySettings& 
     finish_generated(table, std::move(path), heading, trajectory);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -8,7 +8,7 @@
 #include "detail/scenario_keys.hpp"
 #include "detail/table_reader.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 struct UnitSuffix {
@@ -229,4 +229,4 @@ std::vector<KeyTable> KeyRecorder::tables() const {
     return tables;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 
 #include "run/fault/parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What stands after the equals sign of a key, or under its heading.
 enum class KeyType {
@@ -86,4 +86,4 @@ std::string scenario_schema_json();
 /// The page of all keys, Markdown.
 std::string scenario_keys_markdown();
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

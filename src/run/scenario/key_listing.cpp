@@ -8,7 +8,7 @@
 #include "base/core/words.hpp"
 #include "run/scenario/key_catalogue.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr double no_limit = std::numeric_limits<double>::max();
@@ -200,4 +200,4 @@ std::string scenario_keys_markdown() {
     return page;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "base/geo/geodetic.hpp"
 #include "run/scenario/key_catalogue.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using Schema = nlohmann::ordered_json;
@@ -237,4 +237,4 @@ std::string scenario_schema_json() {
     return schema.dump(2) + "\n";
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -6,7 +6,7 @@
 #include "detail/scenario_keys.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using Words = std::string_view;
@@ -264,4 +264,4 @@ bool choose_model(ModelSettings& settings, std::string_view name) {
     return true;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

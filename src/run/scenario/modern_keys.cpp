@@ -4,7 +4,7 @@
 
 #include "detail/scenario_keys.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 void read_terms(TableReader& modern, ModernSettings& settings) {
@@ -199,4 +199,4 @@ void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::
     forget_acting_residual(settings);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

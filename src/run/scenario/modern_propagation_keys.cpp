@@ -2,7 +2,7 @@
 
 #include "detail/scenario_keys.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 void read_signal_in_space(TableReader& table, SignalInSpaceParameters& p) {
@@ -233,4 +233,4 @@ void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings,
                  [&](TableReader& t) { read_scintillation(t, p.scintillation_model); });
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

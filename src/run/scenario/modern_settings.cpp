@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 struct MultipathNumbers {
@@ -155,4 +155,4 @@ ModernSettings effective(ModernSettings settings) {
     return settings;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

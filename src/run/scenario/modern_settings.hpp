@@ -11,7 +11,7 @@
 #include "receiver/pvt/navigation_parameters.hpp"
 #include "world/propagation/modern_parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Receivers that the profile was calibrated to (README, validation).
 enum class ModernPreset {
@@ -60,4 +60,4 @@ std::vector<NamedTerm> error_terms(ModernSettings& settings);
 /// is.
 ModernSettings effective(ModernSettings settings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -8,7 +8,7 @@
 
 #include "detail/trajectory_kinds.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // Where the path is; marks the reading when that is missing.
@@ -269,4 +269,4 @@ void read_speed_and_vehicle(TableReader& table, VehicleLimits& vehicle) {
     table.number("speed_mps", vehicle.along.speed, {1e-3, 12000}, {"along the way", "the vehicle's"});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

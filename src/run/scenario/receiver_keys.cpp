@@ -8,7 +8,7 @@
 #include "detail/scenario_keys.hpp"
 #include "run/scenario/board_files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSentence sentence) {
@@ -208,4 +208,4 @@ void read_outputs(TableReader& top, Scenario& scenario) {
         });
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

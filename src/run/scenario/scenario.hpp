@@ -36,7 +36,7 @@
 #include "world/gnss/ephemeris.hpp"
 #include "world/propagation/propagation_parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// In place of a file: demo_city().
 inline constexpr const char* demo_scene_name = "demo";
@@ -255,4 +255,4 @@ std::string told_place(const Scenario& scenario, std::string_view key, std::stri
 /// What messages call a receiver: its name, or receiver0 and so on by its place in the list.
 std::string receiver_name(const Scenario& scenario, std::size_t index);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

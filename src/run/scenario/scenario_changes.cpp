@@ -13,7 +13,7 @@
 #include "detail/scenario_keys.hpp"
 #include "detail/toml_values.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 std::vector<std::string_view> parts_of(std::string_view key) {
@@ -319,4 +319,4 @@ std::vector<std::string> files_of_change(const ScenarioChange& change, const std
     return std::move(walk).content().files;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "detail/scenario_keys.hpp"
 #include "world/propagation/reflection.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 void read_scene_files(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder) {
@@ -241,4 +241,4 @@ Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& fil
     return trajectory.value_or(FixedSettings{});
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "base/core/result.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A key with another value. Of a list of tables an entry is meant by its place, from 0 on, by its `name`, by its
 /// `kind` where no other has it, or by what messages call it: "receiver.0.rate_hz", "fault.outage.for_s",
@@ -85,4 +85,4 @@ Result<Scenario> read_scenario_file(const std::filesystem::path& file);
 Result<TrajectorySettings> read_trajectory_file(const std::filesystem::path& file, std::vector<std::string>& warnings,
                                                 std::span<const ScenarioChange> changes = {});
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

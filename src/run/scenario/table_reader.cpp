@@ -10,7 +10,7 @@
 #include "base/core/words.hpp"
 #include "detail/toml_values.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 std::string_view type_words(const toml::node& node) {
@@ -396,4 +396,4 @@ Result<void> read_toml(std::string_view text, const std::string& file, const std
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "detail/table_reader.hpp"
 #include "run/scenario/scenario_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 std::string on_one_line(std::string_view sentence) {
     constexpr std::size_t longest = 600;
@@ -264,4 +264,4 @@ std::optional<std::size_t> TableReader::note_kinds(std::span<const std::string_v
     return kind;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -13,7 +13,7 @@
 #include "run/fault/fault_kind.hpp"
 #include "run/fault/timeline.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 std::string check_utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
@@ -223,4 +223,4 @@ std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime 
     return warnings;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

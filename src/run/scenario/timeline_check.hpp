@@ -7,7 +7,7 @@
 #include "base/core/result.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Refuses with `input` what cannot happen: faults of measurements under a sensor model, which measures nothing; times
 /// before the start of the run.
@@ -20,4 +20,4 @@ std::vector<std::string> timeline_warnings(const Scenario& scenario, GpsTime sta
 /// events that do not come before.
 std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime start, GpsTime end);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

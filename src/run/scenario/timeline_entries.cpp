@@ -12,7 +12,7 @@
 #include "run/fault/timeline_keys.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using GivenValues = std::map<std::string, ParameterValue, std::less<>>;
@@ -243,4 +243,4 @@ void read_timeline(TableReader& top, Scenario& scenario) {
     check_fault_names(scenario, mistakes);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

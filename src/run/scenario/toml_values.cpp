@@ -9,7 +9,7 @@
 #include "detail/toml_values.hpp"
 #include "run/scenario/scenario_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // The place behind the text in quotes that begins at `at` (TOML 1.0, "String"); of one that does not end, its line's
@@ -270,4 +270,4 @@ Result<std::vector<CampaignValue>> parse_campaign_values(std::string_view text) 
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

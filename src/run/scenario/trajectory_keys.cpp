@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // What a kind's reader may need.
@@ -269,4 +269,4 @@ void read_file_track(TableReader& table, PlaceReader& places, const std::filesys
     trajectory = file;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -15,7 +15,7 @@
 #include "world/flow/fix.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What a sentence speaks of. "Reported" is what the receiver tells its clients, right or wrong.
 enum class ExpectedSubject {
@@ -166,4 +166,4 @@ std::string condition_text(const JsonCondition& condition);
 /// Whether a line is a JSON object that fulfils the condition. Lines that are no JSON do not.
 bool fulfils(const JsonCondition& condition, std::string_view line);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -3,7 +3,7 @@
 #include "base/core/number_text.hpp"
 #include "detail/sentence_words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 bool is_message(ExpectedSubject subject) {
     return subject == ExpectedSubject::client_sends || subject == ExpectedSubject::receiver_sends ||
@@ -341,4 +341,4 @@ tl::expected<ExpectedSentence, SentenceMistake> parse_expectation(std::string_vi
     return SentenceParser(text).read();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

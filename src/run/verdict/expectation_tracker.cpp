@@ -8,7 +8,7 @@
 #include "detail/sentence_words.hpp"
 #include "run/verdict/expectation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 // A receiver of which no epoch has been seen for so long reports nothing: longer than any pause between two epochs.
@@ -396,4 +396,4 @@ std::string ExpectationTracker::seen_all_along() const {
     return is_of_epochs(sentence_.subject.subject) ? "" : " (seen: nothing)";
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "run/fault/run_observer.hpp"
 #include "run/verdict/expectation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 class Judge::State {
     struct Follower {
@@ -242,4 +242,4 @@ std::string Expectation::title() const {
     return !what.empty() || !probe ? what : probe_text(*probe);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "run/verdict/expectation.hpp"
 #include "run/verdict/verdict.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The run that is judged.
 struct JudgedRun {
@@ -60,4 +60,4 @@ private:
     std::unique_ptr<State> state_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -13,7 +13,7 @@
 #include "detail/sentence_words.hpp"
 #include "run/verdict/expectation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 using JsonValue = nlohmann::json;
@@ -309,4 +309,4 @@ void ProbeRun::keep_undecided() {
     finding_.evidence = "the run ended before the time to try again was over; " + finding_.evidence;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -11,7 +11,7 @@
 #include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
@@ -160,4 +160,4 @@ std::string junit_xml(std::span<const Verdict> verdicts, const ReportedRun& run)
     return text.str();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -8,7 +8,7 @@
 
 #include "run/verdict/verdict.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The run that the verdicts are about.
 struct ReportedRun {
@@ -33,4 +33,4 @@ std::string verdict_json(std::span<const Verdict> verdicts, const ReportedRun& r
 /// not have become U+FFFD.
 std::string junit_xml(std::span<const Verdict> verdicts, const ReportedRun& run);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 std::string quoted_where_needed(const std::string& name) {
@@ -175,4 +175,4 @@ std::string event_mistake(const ExpectedSentence& sentence, std::span<const std:
                        did_you_mean(name, known));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 
 #include "base/core/words.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 constexpr std::size_t longest_sentence = 1000;
@@ -163,4 +163,4 @@ void SentenceWords::refuse(std::size_t column, std::string sentence) {
     if (!mistake_) mistake_ = SentenceMistake{column, std::move(sentence)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -5,7 +5,7 @@
 #include "detail/subject_view.hpp"
 #include "run/fault/known_names.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 namespace {
 
 bool compared(double number, const SubjectClause& subject) {
@@ -250,4 +250,4 @@ std::string_view PresenceWatch::why_missing() const {
                                     : "no client sent anything in the whole run, so that its silence shows nothing";
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

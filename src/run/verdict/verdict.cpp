@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 std::string_view outcome_name(Outcome outcome) {
     switch (outcome) {
@@ -34,4 +34,4 @@ bool is_success(std::span<const Verdict> verdicts) {
     return all_met(verdicts).value_or(any_passed);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// How a run ends: by itself or because it was asked to, or stopped from outside before the end that it was to have.
 enum class RunEnd { over, cut };
@@ -41,4 +41,4 @@ std::optional<bool> all_met(std::span<const Verdict> verdicts);
 /// least one passed. A run that judged nothing has shown nothing.
 bool is_success(std::span<const Verdict> verdicts);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

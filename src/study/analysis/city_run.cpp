@@ -11,7 +11,7 @@
 #include "base/core/files.hpp"
 #include "detail/run_tables.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 // A table with a header line, read line by line; its state is the place in the text.
@@ -173,4 +173,4 @@ Result<CityRun> read_city_run(const std::filesystem::path& folder, Angle lowest)
     return parse_city_run(*fixes, *satellites, folder.string(), lowest);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -12,7 +12,7 @@
 #include "base/geo/geodetic.hpp"
 #include "base/time/utc_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// One epoch of a run.
 struct CityRunEpoch {
@@ -38,4 +38,4 @@ Result<CityRun> read_city_run(const std::filesystem::path& folder, Angle lowest 
 Result<CityRun> parse_city_run(std::string_view fixes, std::string_view satellites, const std::string& name,
                                Angle lowest = Angle::degrees(5));
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 constexpr std::size_t most_windows = 200;  // pairs grow with the square
@@ -225,4 +225,4 @@ Result<Comparison> compare(const FixSeries& a, const FixSeries& b, const Compari
     return comparison;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

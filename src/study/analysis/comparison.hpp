@@ -12,7 +12,7 @@
 #include "study/analysis/fix_series.hpp"
 #include "study/analysis/statistics.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// The error series that figures are made from, metres.
 enum class ErrorQuantity { east, north, up, horizontal, spatial };
@@ -111,4 +111,4 @@ std::string comparison_text(const Comparison& comparison);
 /// One JSON object, indented, ending in a newline.
 std::string comparison_json(const Comparison& comparison);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

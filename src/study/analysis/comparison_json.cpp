@@ -3,7 +3,7 @@
 #include "base/time/utc_time.hpp"
 #include "study/analysis/comparison.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -151,4 +151,4 @@ std::string comparison_json(const Comparison& comparison) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

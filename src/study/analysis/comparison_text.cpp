@@ -6,7 +6,7 @@
 #include "base/time/utc_time.hpp"
 #include "study/analysis/comparison.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 std::string heading_of(ErrorQuantity quantity) {
@@ -249,4 +249,4 @@ std::string comparison_text(const Comparison& comparison) {
     return text;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -12,7 +12,7 @@
 #include "study/analysis/scene_sky.hpp"
 #include "world/gnss/dop.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 constexpr std::size_t fewest_for_a_fix = 4;
@@ -287,4 +287,4 @@ double CoverageGrid::width() const {
 
 double CoverageGrid::height() const { return (north - south).rad() * curvature_radii(middle().latitude).meridian; }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

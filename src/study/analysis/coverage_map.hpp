@@ -15,7 +15,7 @@
 #include "world/flow/sky_view.hpp"
 #include "world/scene/path_finder.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// A piece of the Earth between two meridians and two parallels, cut into equal cells.
 struct CoverageGrid {
@@ -94,4 +94,4 @@ CoverageMap coverage_map(const std::shared_ptr<const UrbanScene>& scene, const C
 /// after up_m, their other cells are empty.
 std::string coverage_csv(const CoverageMap& map);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

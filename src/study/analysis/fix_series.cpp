@@ -13,7 +13,7 @@
 #include "receiver/observed/observed_log.hpp"
 #include "receiver/protocol/nmea_satellites.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 void RunningStatistics::add(double value) {
     ++n_;
@@ -259,4 +259,4 @@ std::vector<FixSeries> windows(const FixSeries& series, std::size_t length) {
     return parts;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

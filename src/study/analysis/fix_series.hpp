@@ -16,7 +16,7 @@
 #include "base/geo/geoid.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// Count, mean and standard deviation of numbers that are not kept (Welford 1962).
 class RunningStatistics {
@@ -112,4 +112,4 @@ FixSeries slice(const FixSeries& series, const Slice& slice);
 /// them; what is left at the end is dropped. `length` at least 1.
 std::vector<FixSeries> windows(const FixSeries& series, std::size_t length);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

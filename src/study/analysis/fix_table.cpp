@@ -11,7 +11,7 @@
 #include "base/time/utc_time.hpp"
 #include "world/flow/fix.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 // No aircraft, no satellite that carries a GNSS receiver is higher, m.
@@ -278,4 +278,4 @@ Result<FixSeries> parse_fix_table(std::string_view text, const std::string& name
     return series;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -13,7 +13,7 @@
 #include "base/time/utc_time.hpp"
 #include "detail/run_tables.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 LineCells split_cells(std::string_view line, char separator) {
     LineCells cells;
@@ -270,4 +270,4 @@ void add_satellites_beside(const std::filesystem::path& fixes, FixSeries& series
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

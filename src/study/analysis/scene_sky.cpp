@@ -7,7 +7,7 @@
 #include "world/gnss/orbit.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 SkyDirection direction_angles(const Eigen::Vector3d& unit) {
@@ -91,4 +91,4 @@ SkyMask sky_mask(const UrbanScene& scene, const Eigen::Vector3d& antenna) {
     return mask;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

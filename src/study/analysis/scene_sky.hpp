@@ -13,7 +13,7 @@
 #include "world/scene/scene_path.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// How a satellite's signal arrives.
 enum class Reception : std::uint8_t { line_of_sight, reflected, blocked };
@@ -63,4 +63,4 @@ struct SkyMask {
 };
 SkyMask sky_mask(const UrbanScene& scene, const Eigen::Vector3d& antenna);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

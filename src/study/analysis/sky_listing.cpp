@@ -10,7 +10,7 @@
 #include "base/time/utc_time.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 const Arrival* arrival_of(const SkyExtras& extras, SatelliteId id) {
@@ -248,4 +248,4 @@ std::string tracks_csv(std::span<const SatelliteTrack> tracks) {
     return text;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

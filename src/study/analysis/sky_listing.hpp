@@ -15,7 +15,7 @@
 #include "world/gnss/dop.hpp"
 #include "world/sky/satellite_tracks.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// One satellite of the listing.
 struct SkyRow {
@@ -66,4 +66,4 @@ std::string sky_csv(std::span<const SkyListing> listings);
 /// millimetre).
 std::string tracks_csv(std::span<const SatelliteTrack> tracks);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

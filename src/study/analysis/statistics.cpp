@@ -11,7 +11,7 @@
 
 #include "base/geo/local_frame.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 std::vector<double> ascending(std::span<const double> values) {
@@ -333,4 +333,4 @@ std::optional<double> TimeCorrelation::epoch_noise() const {
     return sample_statistics(differences)->std / std::numbers::sqrt2;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -13,7 +13,7 @@
 #include "base/geo/geodetic.hpp"
 #include "study/analysis/fix_series.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// Distances between the distributions of two series, 0 (alike) … 1 (no value in common).
 struct DistributionDistance {
@@ -155,4 +155,4 @@ private:
     double squares_ = 0;  // their sum; 0: the values are constant
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

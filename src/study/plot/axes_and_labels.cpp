@@ -8,7 +8,7 @@
 #include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -186,4 +186,4 @@ LabelBox LabelPlacement::place(SvgPoint mark, double radius, SvgPoint size) {
     return best;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

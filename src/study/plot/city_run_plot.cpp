@@ -8,7 +8,7 @@
 #include "detail/plan_view.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -243,4 +243,4 @@ std::string city_run_plot_svg(const CityRun& run, const UrbanScene* scene, const
     return svg.str();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

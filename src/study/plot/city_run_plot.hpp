@@ -7,7 +7,7 @@
 #include "study/analysis/city_run.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 inline constexpr double city_run_plot_width = 960;
 inline constexpr double city_run_plot_height = 1120;
@@ -18,4 +18,4 @@ inline constexpr double city_run_plot_height = 1120;
 /// @param scene may be absent
 std::string city_run_plot_svg(const CityRun& run, const UrbanScene* scene, const std::string& title);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -9,7 +9,7 @@
 #include "detail/plot_style.hpp"
 #include "detail/scatter_panel.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -174,4 +174,4 @@ void draw_error_histograms(SvgDocument& svg, const ScatterPanel& a, const Scatte
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -8,7 +8,7 @@
 #include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -271,4 +271,4 @@ SvgDocument trend_plot(const TrendPlot& plot) {
     return svg;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -9,7 +9,7 @@
 
 #include "study/plot/svg_document.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// A percentile with the interval that it lies in, in the unit of the values; an open end is nothing.
 struct MarkedPercentile {
@@ -55,4 +55,4 @@ inline constexpr std::size_t most_trend_dots = 600;
 /// The picture: dots, a band from the 5th to the 95th percentile and a line at the median of each range.
 SvgDocument trend_plot(const TrendPlot& plot);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

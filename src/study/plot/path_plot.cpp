@@ -10,7 +10,7 @@
 #include "detail/plan_view.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 // What is drawn of a sample.
@@ -213,4 +213,4 @@ std::string path_plot_svg(std::span<const PathSample> samples, const std::string
     return svg.str();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -6,7 +6,7 @@
 
 #include "motion/trajectory/path_survey.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 inline constexpr double path_plot_width = 720;
 inline constexpr double path_plot_height = 860;
@@ -17,4 +17,4 @@ inline constexpr double path_plot_height = 860;
 /// @param samples ascending in time, evenly spaced; a few thousand at most make sense
 std::string path_plot_svg(std::span<const PathSample> samples, const std::string& title);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -9,7 +9,7 @@
 #include "detail/plan_view.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 PlanView::PlanView(const Eigen::AlignedBox2d& area, SvgPoint corner, SvgPoint size)
     : area_(area),
@@ -294,4 +294,4 @@ double draw_city(SvgDocument& svg, const UrbanScene& scene, const PlanView& view
     return highest;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -10,7 +10,7 @@
 #include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -274,4 +274,4 @@ SvgDocument rate_map_plot(const RateMap& map) {
     return svg;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

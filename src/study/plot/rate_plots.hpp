@@ -10,7 +10,7 @@
 
 #include "study/plot/svg_document.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// A rate with its interval, shares 0 … 1.
 struct RateRow {
@@ -53,4 +53,4 @@ inline constexpr double rate_map_width = 450;
 /// The picture. Each cell tells its rate in percent, and on being pointed at its counts and interval.
 SvgDocument rate_map_plot(const RateMap& map);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -11,7 +11,7 @@
 #include "detail/plot_style.hpp"
 #include "detail/scatter_panel.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -226,4 +226,4 @@ std::string scatter_plot_svg(const ScatterCloud& candidate, const ScatterCloud& 
     return svg.str();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

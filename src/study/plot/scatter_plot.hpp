@@ -7,7 +7,7 @@
 #include "study/analysis/comparison.hpp"
 #include "study/analysis/statistics.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// One cloud of the picture.
 struct ScatterCloud {
@@ -33,4 +33,4 @@ struct ErrorEllipse {
 };
 ErrorEllipse error_ellipse_95(std::span<const double> east, std::span<const double> north);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -12,7 +12,7 @@
 #include "detail/plan_view.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -315,4 +315,4 @@ std::string coverage_plot_svg(const CoverageMap& map, CoverageQuantity quantity,
     return svg.str();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -17,7 +17,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// One satellite's signal as a line from the antenna over its points of reflection and on towards the satellite.
 struct ScenePlotRay {
@@ -66,4 +66,4 @@ inline constexpr double coverage_plot_height = 900;
 /// some are left out evenly. @param scene may be absent
 std::string coverage_plot_svg(const CoverageMap& map, CoverageQuantity quantity, const UrbanScene* scene);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

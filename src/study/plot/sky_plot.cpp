@@ -10,7 +10,7 @@
 #include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -293,4 +293,4 @@ std::string sky_plot_svg(const SkyPlot& plot) {
     return svg.str();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

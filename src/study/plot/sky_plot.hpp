@@ -9,7 +9,7 @@
 #include "world/gnss/dop.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// One satellite of the picture.
 struct SkyPlotSatellite {
@@ -49,4 +49,4 @@ inline constexpr double sky_plot_radius = 248;
 /// satellite the buildings are all that it tells of.
 std::string sky_plot_svg(const SkyPlot& plot);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -10,7 +10,7 @@
 #include "base/core/words.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 // Fonts that every system has one of; nothing is loaded from elsewhere.
@@ -175,4 +175,4 @@ std::string dark_picture_rules() {
     return rules;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// A point of the picture, pixels right and down from the upper left corner.
 struct SvgPoint {
@@ -85,4 +85,4 @@ std::string svg_escape(std::string_view text);
 /// the colours of a light page themselves, so that each stands alone as well.
 std::string dark_picture_rules();
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -14,7 +14,7 @@
 #include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 namespace {
 
 namespace style = plot_style;
@@ -295,4 +295,4 @@ std::string track_plot_svg(std::span<const SatelliteTrack> tracks, const std::st
     return svg.str();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

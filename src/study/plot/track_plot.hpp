@@ -7,7 +7,7 @@
 #include "study/plot/svg_document.hpp"
 #include "world/sky/satellite_tracks.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// Where an Earth-fixed point lies in an isometric picture: the X, Y and Z axes are equally foreshortened, Z points up,
 /// X to the lower left, Y to the lower right. Unit: that of the point.
@@ -27,4 +27,4 @@ inline constexpr double track_plot_height = 800;
 /// axes in megametres. What is behind the Earth is lighter. A gap in time of a track is a gap in its line.
 std::string track_plot_svg(std::span<const SatelliteTrack> tracks, const std::string& title);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

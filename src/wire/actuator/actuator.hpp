@@ -8,7 +8,7 @@
 #include "base/core/process.hpp"
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// What a device under test gets by way of an actuator.
 enum class PowerState { on, cut };
@@ -40,4 +40,4 @@ public:
 /// "on" or "cut".
 inline const char* to_string(PowerState state) { return state == PowerState::on ? "on" : "cut"; }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -10,7 +10,7 @@
 #include "detail/switch_parts.hpp"
 #include "wire/transport/serial.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::string_view power_grammar =
@@ -196,4 +196,4 @@ Result<std::unique_ptr<Actuator>> open_actuator(std::string_view uri) {
     return std::visit([](const auto& one) { return open_switch(one); }, *address);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -12,7 +12,7 @@
 #include "wire/actuator/actuator.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// What the active level of an output does: a relay drawn, a pin high, a modem line asserted.
 enum class ActiveLevel { cuts, powers };
@@ -59,4 +59,4 @@ bool may_be_one_switch(const ActuatorUri& a, const ActuatorUri& b);
 /// the hardware is not there, is another one than it was taken for, or may not be used.
 Result<std::unique_ptr<Actuator>> open_actuator(std::string_view uri);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -9,7 +9,7 @@
 #include "detail/switch_parts.hpp"
 #include "wire/hid/hid_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::size_t relay_report_size = 8;  // without its id
@@ -336,4 +336,4 @@ Result<std::unique_ptr<Actuator>> open_switch(const GpioAddress& address) {
     return std::make_unique<GpioSwitch>(std::move(*device), address);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -9,7 +9,7 @@
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// How a relay board wants its orders. The id pairs of these boards are shared by products that are no relays, so that
 /// only the product string tells.
@@ -64,4 +64,4 @@ std::optional<bool> output_level(ByteSpan answer, int number);
 
 }  // namespace mcp2221
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

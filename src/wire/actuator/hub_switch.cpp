@@ -16,7 +16,7 @@
 #include "detail/switch_parts.hpp"
 #include "wire/usb/hub_port_power.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// While it lives the kernel's hub driver neither switches the port's power on again, as it otherwise does where what
 /// was plugged in has gone, nor gives a driver to what appears there (USBDEVFS_CLAIM_PORT). The kernel takes it back
@@ -109,4 +109,4 @@ Result<std::unique_ptr<Actuator>> open_switch(const HubPortAddress& address) {
     return std::make_unique<HubSwitch>(std::move(*port));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -12,7 +12,7 @@
 #include "detail/switch_parts.hpp"
 #include "wire/transport/file_descriptor.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 class ModemLineSwitch : public Actuator {
@@ -98,4 +98,4 @@ Result<std::unique_ptr<Actuator>> open_switch(const ModemLineAddress& address) {
     return open_modem_line(address, std::make_shared<SerialSystem>());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

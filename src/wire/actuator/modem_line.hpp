@@ -6,7 +6,7 @@
 #include "wire/actuator/actuator_uri.hpp"
 #include "wire/transport/serial_system.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// Opens the device, takes RTS from flow control (CRTSCTS off) and keeps the line's level beyond the closing (HUPCL
 /// off; neither is put back, which could move the line). CLOCAL is on meanwhile. Linux asserts RTS and DTR whenever a
@@ -15,4 +15,4 @@ namespace skyloop {
 Result<std::unique_ptr<Actuator>> open_modem_line(const ModemLineAddress& address,
                                                   std::shared_ptr<SerialSystem> system);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

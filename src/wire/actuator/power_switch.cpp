@@ -18,7 +18,7 @@
 #include "base/core/result.hpp"
 #include "base/core/threads.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// A name that one switch of the machine has at a time; the kernel takes it back however a program ends. It is an
 /// abstract socket, which needs no folder that all users may write to, and leaves nothing behind. Containers with a
@@ -210,4 +210,4 @@ PowerCounts PowerSwitch::counts() const {
     return counts_;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

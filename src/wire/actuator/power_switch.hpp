@@ -16,7 +16,7 @@
 #include "wire/actuator/actuator.hpp"
 #include "wire/actuator/power_watchdog.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// What a switch has done.
 struct PowerCounts {
@@ -85,4 +85,4 @@ private:
     std::thread thread_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -11,7 +11,7 @@
 #include "base/core/words.hpp"
 #include "wire/actuator/actuator_uri.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 // One record of the socket, which keeps their borders.
@@ -102,4 +102,4 @@ void PowerWatchdog::note_group(std::size_t ward, std::optional<int> group) {
     static_cast<void>(note(noted_group, ward, group.value_or(0)));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -10,7 +10,7 @@
 #include "base/core/result.hpp"
 #include "base/core/watchdog_process.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// A process of its own that outlives a crash, or a kill -9, of the program that started it: when that is gone, it
 /// restores by fresh handles what had been cut, says so on stderr, and ends. It is in a session of its own and takes no
@@ -37,4 +37,4 @@ private:
     std::unique_ptr<WatchdogProcess> process_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

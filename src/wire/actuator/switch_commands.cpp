@@ -6,7 +6,7 @@
 #include "base/core/process.hpp"
 #include "detail/switch_parts.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr Seconds command_patience{10};
@@ -94,4 +94,4 @@ Result<std::unique_ptr<Actuator>> open_switch(const SwitchCommands& commands) {
     return std::make_unique<CommandSwitch>(commands);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -8,7 +8,7 @@
 #include "base/core/number_text.hpp"
 #include "wire/devices/device_list.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,4 +125,4 @@ std::vector<std::string> device_doubts(const DeviceEntry& device, const SystemFo
     return doubts;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

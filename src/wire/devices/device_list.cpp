@@ -12,7 +12,7 @@
 #include "base/core/files.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 namespace fs = std::filesystem;
@@ -269,4 +269,4 @@ Result<std::vector<DeviceEntry>> list_devices(std::span<const DeviceProfile> pro
     return all;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

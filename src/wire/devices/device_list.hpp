@@ -14,7 +14,7 @@
 #include "wire/devices/device_profile.hpp"
 #include "wire/usb/usb_watch.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// Where the system tells of devices; others than these are for tests.
 struct SystemFolders {
@@ -122,4 +122,4 @@ std::vector<DeviceNode> nodes_of_usb(const UsbDeviceInfo& usb, const SystemFolde
 /// A serial line by its name, "ttyAMA0", without interface and driver.
 DeviceNode serial_node(const std::string& name, const SystemFolders& folders);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

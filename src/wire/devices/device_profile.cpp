@@ -7,7 +7,7 @@
 #include <array>
 #include <map>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::array<std::string_view, 7> kind_names{"autopilot", "receiver", "bridge",    "relay",
@@ -136,4 +136,4 @@ std::string udev_rules(std::span<const DeviceProfile> profiles) {
     return text;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

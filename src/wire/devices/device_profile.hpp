@@ -10,7 +10,7 @@
 
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// What a device is on a bench.
 enum class DeviceKind { autopilot, receiver, bridge, relay, gpio, hub, bootloader };
@@ -63,4 +63,4 @@ std::string udev_rules(std::span<const DeviceProfile> profiles);
 /// The lines of that file for one pair of ids.
 std::string udev_rules_of(UsbIds ids);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

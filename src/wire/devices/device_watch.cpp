@@ -2,7 +2,7 @@
 
 #include "wire/devices/device_list.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 using DeviceClock = std::chrono::steady_clock;
@@ -82,4 +82,4 @@ Result<std::vector<DeviceNews>> DeviceWatch::wait(std::chrono::milliseconds long
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

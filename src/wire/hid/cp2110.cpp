@@ -12,7 +12,7 @@
 #include "base/core/threads.hpp"
 #include "wire/usb/serial_bridge.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 // AN434: the reports and what they hold.
@@ -192,4 +192,4 @@ Result<std::unique_ptr<SerialBridge>> open_cp2110(const UsbAddress& address, con
     return open_cp2110(std::move(*device), line);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -7,7 +7,7 @@
 #include "wire/hid/hid_device.hpp"
 #include "wire/usb/serial_bridge.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The feature report that sets the UART (AN434, "Get/Set UART Config"): its id, the speed with the most significant
 /// byte first, parity (1: odd, 2: even), flow control, data bits less 5, stop bits (1: long).
@@ -19,4 +19,4 @@ Result<std::unique_ptr<SerialBridge>> open_cp2110(const UsbAddress& address, con
 /// Through a device that is open.
 Result<std::unique_ptr<SerialBridge>> open_cp2110(HidDevice device, const BridgeLine& line);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -18,7 +18,7 @@
 #include "base/core/files.hpp"
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 struct HidApi {
     HidBackend backend;
@@ -289,4 +289,4 @@ Result<Bytes> HidDevice::read(std::chrono::milliseconds wait) {
     return report;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -11,7 +11,7 @@
 #include "base/core/result.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The two libraries of hidapi. They export the same names, so that each is loaded when it is first asked for.
 enum class HidBackend {
@@ -64,4 +64,4 @@ private:
     UsbDeviceInfo info_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 // USB 2.0, table 9-4.
@@ -252,4 +252,4 @@ std::optional<Bytes> CdcAcmDevice::take_notification() {
     return Bytes{0xA1, 0x20, 0, 0, 0, 0, 2, 0, static_cast<std::uint8_t>(carrier | dsr | (lost ? overrun : 0)), 0};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

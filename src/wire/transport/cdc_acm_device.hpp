@@ -11,7 +11,7 @@
 #include "base/core/bytes.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// What a virtual device says it is. The default is the generic serial device of Linux' own USB gadgets, of no maker of
 /// receivers.
@@ -96,4 +96,4 @@ private:
     bool notify_ = false, overrun_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -12,7 +12,7 @@
 
 #include "base/core/threads.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// Looks for a lost device every 0.5 s, in another thread: to close, to find and to open one may take its time, and no
 /// loop waits for it. `End` is what an opened device is.
@@ -84,4 +84,4 @@ private:
     int same_trouble_ = 0;  // attempts in a row
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

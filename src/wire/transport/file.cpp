@@ -15,7 +15,7 @@
 
 #include "wire/transport/file_descriptor.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 FileDescriptor::~FileDescriptor() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -111,4 +111,4 @@ std::size_t FileTransport::write(ByteSpan bytes) {
     return taken;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -9,7 +9,7 @@
 #include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// A wire in one direction that ends in a file, a pipe or a terminal. It has no speed, and nothing ever comes in.
 ///
@@ -47,4 +47,4 @@ private:
     int patience_ms_ = 0;  // as poll() takes it: 0 asks and goes on, −1 waits for as long as it takes
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

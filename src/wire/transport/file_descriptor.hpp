@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// Owns one descriptor, or none (−1).
 class FileDescriptor {
@@ -24,4 +24,4 @@ private:
     int descriptor_ = -1;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

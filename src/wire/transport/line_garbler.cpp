@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 LineGarbler::LineGarbler(std::uint32_t sender_baud, std::uint32_t listener_baud) {
     set_bauds(sender_baud, listener_baud);
@@ -103,4 +103,4 @@ void LineGarbler::forget_passed() {
     at_ -= passed * sender_bit_;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

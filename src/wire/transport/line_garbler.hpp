@@ -7,7 +7,7 @@
 
 #include "base/core/bytes.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// Lays bytes out on a line as 8N1 bits of the sender's length and reads them as the listener's UART does: a falling
 /// edge starts a byte, every bit is sampled at the listener's bit centres, and a low stop bit is a framing error, which
@@ -51,4 +51,4 @@ private:
     std::uint64_t framing_errors_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

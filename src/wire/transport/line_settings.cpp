@@ -9,7 +9,7 @@
 #include "base/core/words.hpp"
 #include "detail/line_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 // "8N1"; nothing for anything else.
@@ -112,4 +112,4 @@ bool has_format(const termios2& settings, const SerialFormat& format) {
     return (settings.c_cflag & format_bits) == bits_of(format);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

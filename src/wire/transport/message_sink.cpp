@@ -18,7 +18,7 @@
 #include "base/core/bytes.hpp"
 #include "detail/tcp_socket.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// One other end of a stream.
 ///
@@ -288,4 +288,4 @@ std::unique_ptr<MessageSink> make_wire_sink(std::unique_ptr<Transport> wire) {
     return std::make_unique<WireSink>(std::move(wire));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

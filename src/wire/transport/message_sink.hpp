@@ -13,7 +13,7 @@
 #include "wire/transport/tcp.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// What became of messages.
 struct SinkCounts {
@@ -72,4 +72,4 @@ Result<std::unique_ptr<MessageSink>> open_tcp_server_sink(const TcpAddress& addr
 /// Messages onto a wire: a connection that is made, or a file.
 std::unique_ptr<MessageSink> make_wire_sink(std::unique_ptr<Transport> wire);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -15,7 +15,7 @@
 #include "wire/transport/usbip_server.hpp"
 #include "wire/usb/cdc_acm.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 struct Scheme {
@@ -191,4 +191,4 @@ Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const Us
     return std::unique_ptr<Transport>(FileTransport::standard_output());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -15,7 +15,7 @@
 #include "wire/transport/transport.hpp"
 #include "wire/transport/usb_bridge.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The wires of this version.
 enum class WireKind { pty, serial, usb, hid, usbip, tcp, tcp_connect, rfc2217, file, standard_output };
@@ -41,4 +41,4 @@ Result<PortUri> parse_port_uri(std::string_view uri);
 /// @param face of the device that a USB/IP wire shows
 Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const UsbFace& face = {});
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

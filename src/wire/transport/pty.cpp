@@ -20,7 +20,7 @@
 
 #include "detail/line_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ int PtyTransport::clients() {
     return clients_;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -11,7 +11,7 @@
 #include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The master side of a pseudo-terminal whose other side clients open (facts: WIRES.md section 1).
 ///
@@ -67,4 +67,4 @@ private:
     bool readable_ = false;  ///< bytes were there then
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 // Telnet commands: RFC 854, "TELNET COMMAND STRUCTURE".
@@ -346,4 +346,4 @@ std::string Rfc2217Transport::description() const {
     return under.substr(0, under.rfind(' ')) + " (rfc2217)";
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -14,7 +14,7 @@
 #include "base/core/bytes.hpp"
 #include "wire/transport/tcp.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// What the client has made of the port. Numbers are those of RFC 2217, section 3.
 struct ComPortSettings {
@@ -136,4 +136,4 @@ private:
     Bytes waiting_;           // for the client: answers, and the second half of an escaped byte
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -8,7 +8,7 @@
 #include "detail/line_settings.hpp"
 #include "detail/serial_line.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::int64_t drain_patience_ns = 1'000'000'000;
@@ -217,4 +217,4 @@ std::string SerialTransport::notice() const {
 
 std::string SerialTransport::description() const { return address_.device.string() + " (serial)"; }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -16,7 +16,7 @@
 #include "wire/transport/serial_system.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// A line as it was asked for.
 struct SerialAddress {
@@ -103,4 +103,4 @@ private:
     std::uint64_t held_back_ = 0;  // bytes refused while CTS was low
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

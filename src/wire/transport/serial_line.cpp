@@ -14,7 +14,7 @@
 #include <ctime>
 #include <fstream>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::int64_t ms_in_ns = 1'000'000;
@@ -226,4 +226,4 @@ std::optional<ModemLines> SerialLine::modem_lines() {
                       (bits & TIOCM_RNG) != 0};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -11,7 +11,7 @@
 #include "base/core/files.hpp"
 #include "base/core/threads.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 int SerialSystem::open(const std::filesystem::path& device) {
     return ::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -134,4 +134,4 @@ std::vector<fs::path> places_to_look(const SerialSystem& system, const fs::path&
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -12,7 +12,7 @@
 
 #include "base/core/bytes.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The system calls of a serial line and the two folders that tell of devices. Results and `errno` are those of the
 /// calls; descriptors are real ones. Calls come from the loop and, while a lost device is looked for, from one other
@@ -66,4 +66,4 @@ std::vector<std::filesystem::path> places_to_look(const SerialSystem& system, co
                                                   const std::optional<UsbIdentity>& identity,
                                                   const std::vector<std::string>& beside);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -11,7 +11,7 @@
 #include "base/core/number_text.hpp"
 #include "detail/tcp_socket.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr unsigned patience_ms = 60000;  // with an other end that acknowledges nothing
@@ -156,4 +156,4 @@ std::string TcpTransport::notice() const {
 
 std::string TcpTransport::description() const { return shown_address(server_->address()) + " (tcp)"; }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

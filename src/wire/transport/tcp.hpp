@@ -12,7 +12,7 @@
 #include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// Where a server listens.
 struct TcpAddress {
@@ -80,4 +80,4 @@ void prepare_connection(int socket);
 /// port: then the two ends are one (RFC 9293, section 3.5, simultaneous open), and no server could ever have the port.
 bool calls_itself(int socket);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

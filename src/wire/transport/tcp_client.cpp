@@ -10,7 +10,7 @@
 
 #include "detail/tcp_socket.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
@@ -124,4 +124,4 @@ std::vector<std::string> TcpClientTransport::take_news() { return std::exchange(
 
 std::string TcpClientTransport::description() const { return shown_address(address_) + " (tcp-connect)"; }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

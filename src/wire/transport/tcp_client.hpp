@@ -13,7 +13,7 @@
 #include "wire/transport/tcp.hpp"
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// A connection that is made to a server and made again whenever it is lost.
 ///
@@ -72,4 +72,4 @@ private:
     std::vector<std::string> news_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

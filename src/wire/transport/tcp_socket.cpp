@@ -11,7 +11,7 @@
 #include "base/core/number_text.hpp"
 #include "detail/tcp_socket.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 // Bounds how old the bytes of a slow client grow. Each write of some bytes a millisecond travels alone and takes some 2
@@ -146,4 +146,4 @@ std::optional<AcceptedTcp> TcpListener::accept() const {
     return AcceptedTcp{std::move(socket), shown_address(numeric_address(name, size))};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -10,7 +10,7 @@
 #include "base/core/bytes.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// What the other end of a wire is doing.
 struct LineState {
@@ -78,4 +78,4 @@ public:
     virtual SimulatedEnd* simulated_end() { return nullptr; }
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

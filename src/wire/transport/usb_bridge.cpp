@@ -10,7 +10,7 @@
 #include "detail/line_settings.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::uint32_t bridge_speed_of_no_speed = 115200;  // for a receiver's port that has none
@@ -175,4 +175,4 @@ std::string UsbBridgeTransport::description() const {
     return fmt::format("{} ({})", to_string(address_.device), kind_);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

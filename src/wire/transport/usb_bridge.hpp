@@ -13,7 +13,7 @@
 #include "wire/transport/transport.hpp"
 #include "wire/usb/serial_bridge.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// A bridge as it was asked for.
 struct UsbBridgeAddress {
@@ -70,4 +70,4 @@ private:
     std::vector<std::string> news_{};
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::uint16_t request_import = 0x8003, request_list = 0x8005, reply_import = 0x0003, reply_list = 0x0005;
@@ -163,4 +163,4 @@ Bytes usbip_unlink_reply(const UsbipUnlink& unlink, UsbipStatus status) {
     return bytes;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

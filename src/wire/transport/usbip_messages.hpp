@@ -12,7 +12,7 @@
 #include "base/core/bytes.hpp"
 #include "wire/transport/cdc_acm_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 inline constexpr std::uint16_t usbip_version = 0x0111;
 /// Longer data of one transfer are taken for a mistake. Linux sends at most 16 kB at once to a virtual serial line.
@@ -90,4 +90,4 @@ Bytes usbip_submit_reply(const UsbipSubmit& submit, UsbipStatus status, std::uin
 /// USBIP_RET_UNLINK.
 Bytes usbip_unlink_reply(const UsbipUnlink& unlink, UsbipStatus status);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -8,7 +8,7 @@
 #include "base/core/threads.hpp"
 #include "detail/tcp_socket.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::size_t most_visitors = 8;
@@ -232,4 +232,4 @@ std::string UsbipTransport::other_end() const {
 
 std::string UsbipTransport::description() const { return shown_address(listener_->address()) + " (usbip)"; }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -13,7 +13,7 @@
 #include "wire/transport/transport.hpp"
 #include "wire/transport/usbip_session.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 class TcpListener;
 
@@ -78,4 +78,4 @@ private:
     std::uint64_t untold_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::int64_t bus_bytes_per_ms = 19 * 64, ns_per_ms = 1'000'000;
@@ -190,4 +190,4 @@ std::size_t UsbipSession::put(ByteSpan bytes) {
     return taken;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

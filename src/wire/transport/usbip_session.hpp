@@ -11,7 +11,7 @@
 #include "base/core/bytes.hpp"
 #include "wire/transport/usbip_messages.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The device's end of an imported connection, without its socket: bytes of the client in, bytes for it out.
 ///
@@ -93,4 +93,4 @@ private:
     std::string mistake_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -10,7 +10,7 @@
 #include "wire/usb/serial_bridge.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The two interfaces that a union joins (CDC 1.2, section 5.2.3.2).
 struct CdcUnion {
@@ -38,4 +38,4 @@ Result<CdcAcmShape> cdc_acm_shape(const UsbDevice& device);
 /// it back. Fails with `outside`: not there, no permission, held by another program, no serial device.
 Result<std::unique_ptr<SerialBridge>> open_cdc_acm(const UsbAddress& address, const BridgeLine& line);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

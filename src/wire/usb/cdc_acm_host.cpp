@@ -7,7 +7,7 @@
 
 #include "base/core/threads.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::int64_t ms = 1'000'000, s = 1'000'000'000;  // ns
@@ -330,4 +330,4 @@ void CdcAcmHost::coding_done(libusb_transfer* transfer) {
                     transfer->status == LIBUSB_TRANSFER_STALL ? "the device refused (stall)" : "no answer in time"));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

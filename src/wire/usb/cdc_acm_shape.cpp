@@ -3,7 +3,7 @@
 
 #include "wire/usb/cdc_acm.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 // USB-IF defined class codes; CDC 1.2, tables 13 and 15.
@@ -98,4 +98,4 @@ Result<CdcAcmShape> cdc_acm_shape(const UsbDevice& device) {
                     to_string(describe(device).ids)));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -8,7 +8,7 @@
 
 #include "base/core/number_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr unsigned hub_patience_ms = 1000;
@@ -118,4 +118,4 @@ std::string HubPort::description() const {
     return fmt::format("port {} of the hub {} at {}", port_, to_string(info_.ids), info_.port_path);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

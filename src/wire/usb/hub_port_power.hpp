@@ -8,7 +8,7 @@
 #include "base/core/result.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// A port of a hub that is plugged in.
 class HubPort {
@@ -46,4 +46,4 @@ struct HubPorts {
 /// Nothing for what is no hub descriptor (USB 2.0, table 11-13; USB 3.2, table 10-3).
 std::optional<HubPorts> hub_ports(ByteSpan descriptor);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 std::size_t BridgeBuffers::offer(ByteSpan bytes) {
     const std::lock_guard lock(mutex_);
@@ -76,4 +76,4 @@ void BridgeBuffers::set_gone() {
     gone_ = true;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -12,7 +12,7 @@
 #include "base/core/bytes.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The line behind a bridge.
 struct BridgeLine {
@@ -78,4 +78,4 @@ private:
     bool gone_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

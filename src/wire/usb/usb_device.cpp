@@ -11,7 +11,7 @@
 #include "base/core/files.hpp"
 #include "base/core/number_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 constexpr std::size_t id_digits = 4;
@@ -192,4 +192,4 @@ Result<UsbHandle> open_usb_device(const UsbContext& context, const UsbDevice& de
                     result == LIBUSB_ERROR_ACCESS ? "; a udev rule gives it: skyloop devices shows the line" : ""));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -13,7 +13,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// The two numbers of a device descriptor that tell what a device is (USB 2.0, table 9-8: idVendor, idProduct).
 struct UsbIds {
@@ -53,13 +53,13 @@ Result<UsbAddress> parse_usb_address(std::string_view text);
 /// As parse_usb_address reads it.
 std::string to_string(const UsbAddress& address);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire
 
 struct libusb_context;
 struct libusb_device;
 struct libusb_device_handle;
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// A session of libusb. Devices and handles keep it alive.
 using UsbContext = std::shared_ptr<libusb_context>;
@@ -83,4 +83,4 @@ Result<UsbHandle> open_usb_device(const UsbContext& context, const UsbDevice& de
 /// "no such device (it may have been disconnected)" and the like, of a negative result of libusb.
 std::string usb_error_text(int result);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

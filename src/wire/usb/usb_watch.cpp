@@ -12,7 +12,7 @@
 
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 namespace {
 
 using WatchClock = std::chrono::steady_clock;
@@ -172,4 +172,4 @@ Result<UsbWatch> UsbWatch::start(UsbWatchMode mode) {
 Result<std::vector<UsbChange>> UsbWatch::wait(std::chrono::milliseconds longest) { return source_->wait(longest); }
 bool UsbWatch::polls() const { return source_->polls(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -8,7 +8,7 @@
 #include "base/core/result.hpp"
 #include "wire/usb/usb_device.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// One device that was plugged in or taken out.
 struct UsbChange {
@@ -45,4 +45,4 @@ private:
     std::unique_ptr<Source> source_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

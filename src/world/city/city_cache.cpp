@@ -16,7 +16,7 @@
 #include "detail/companion_files.hpp"
 #include "detail/earth_map.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr std::uint32_t layout_version = 2;  // one more when a number is added, dropped or moved
@@ -357,4 +357,4 @@ Result<CityReading> read_city(const fs::path& path, const CityFileSettings& sett
     return reading_of(std::move(*file), *digest, false);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Where cities are kept, and which.
 struct CityCache {
@@ -37,4 +37,4 @@ std::string encode_city(const CityFile& file, std::uint64_t key);
 /// Nothing for bytes that are not what encode_city() made with this key on a machine of this kind.
 std::optional<CityFile> decode_city(std::string_view bytes, std::uint64_t key);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

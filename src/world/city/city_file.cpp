@@ -8,7 +8,7 @@
 
 #include "detail/city_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 tl::unexpected<Error> axes_misread(std::string_view text) {
@@ -104,4 +104,4 @@ std::vector<std::string> doubts_about(const CityModel& city) {
     return doubts;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

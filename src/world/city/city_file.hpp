@@ -14,7 +14,7 @@
 #include "base/geo/geoid.hpp"
 #include "world/scene/city_model.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Which axis of a file points where: three of x y z, each with an optional minus, for east, north and up. "x,y,z" is
 /// the usual one; "x,-z,y" glTF and other models with y up; "y,x,z" the left-handed levels of Unreal Engine (x north).
@@ -132,4 +132,4 @@ Result<CityFile> parse_geotiff(std::string_view bytes, std::string_view name, co
 /// than 1500, far from its origin, without walls, walls deep below ground. Empty for most.
 std::vector<std::string> doubts_about(const CityModel& city);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "detail/city_text.hpp"
 #include "world/city/footprint.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -387,4 +387,4 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
     return file;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // Too large or too small for a double: which, tells the exponent; without one it is the count of digits.
@@ -98,4 +98,4 @@ bool names_ground(std::string_view name) {
     return (plane == 0 || !is_letter(lower[plane - 1])) && (behind == lower.size() || !is_letter(lower[behind]));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 #include "detail/city_objects.hpp"
 #include "detail/city_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -295,4 +295,4 @@ Result<CityFile> parse_citygml(std::string_view text, std::string_view name, con
     return city_of_objects(std::move(*objects), "citygml", name, settings);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

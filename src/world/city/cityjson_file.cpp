@@ -8,7 +8,7 @@
 #include "detail/city_text.hpp"
 #include "detail/json_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -281,4 +281,4 @@ Result<CityFile> parse_cityjson_sequence(std::string_view text, std::string_view
     return city_of_objects(std::move(*objects), "cityjson", name, settings);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

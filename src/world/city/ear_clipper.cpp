@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -227,4 +227,4 @@ std::vector<Eigen::Vector2d> EarClipper::bridged_ring() const {
     return ring;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

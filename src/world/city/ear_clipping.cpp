@@ -4,7 +4,7 @@
 
 #include "detail/ear_clipper.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -217,4 +217,4 @@ void EarClipper::order_by_code(int start) {
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

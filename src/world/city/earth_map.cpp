@@ -16,7 +16,7 @@
 #include "base/core/words.hpp"
 #include "detail/city_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr double margin_longitude = 15, margin_latitude = 10;  // °; countries with one zone reach some 700 km beyond it
@@ -196,4 +196,4 @@ std::uint64_t proj_data_digest() {
     return digest;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 
 #include "detail/ear_clipper.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
     const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -187,4 +187,4 @@ bool add_polygon(CityModel& city, const std::vector<std::vector<Eigen::Vector3d>
     return true;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

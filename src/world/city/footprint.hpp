@@ -9,7 +9,7 @@
 #include "base/core/result.hpp"
 #include "world/scene/city_model.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// The convex hull, anticlockwise (Andrew 1979); fewer than three corners where the points have no area.
 /// Points without a place are left out.
@@ -36,4 +36,4 @@ bool add_extruded(CityModel& city, const Footprint& footprint, double base, doub
 bool add_polygon(CityModel& city, const std::vector<std::vector<Eigen::Vector3d>>& rings, SurfaceKind kind,
                  std::uint8_t material = 0);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "detail/json_text.hpp"
 #include "detail/outlines.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -222,4 +222,4 @@ Result<CityFile> parse_geojson(std::string_view text, std::string_view name, con
     return city_of_outlines(std::move(*outlines), "geojson", name, settings);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -18,7 +18,7 @@
 #include "detail/height_grid.hpp"
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr tmsize_t most_block_bytes = tmsize_t{1} << 28;  ///< of a strip, a tile or a tag
@@ -257,4 +257,4 @@ Result<CityFile> parse_geotiff(std::string_view bytes, std::string_view name, co
     return city_of_grid(std::move(*grid), name, settings);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "base/core/archive.hpp"
 #include "detail/city_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 using nlohmann::json;
@@ -296,4 +296,4 @@ Result<GltfNumbers> GltfDocument::numbers(std::uint64_t accessor, std::string_vi
     return numbers;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 #include "detail/gltf_document.hpp"
 #include "detail/mesh_builder.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 using nlohmann::json;
@@ -193,4 +193,4 @@ Result<CityFile> parse_gltf(std::string_view bytes, std::string_view name, const
     });
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -13,7 +13,7 @@
 #include "detail/place_on_earth.hpp"
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr std::uint32_t no_vertex = ~0U;
@@ -304,4 +304,4 @@ Result<CityFile> parse_height_grid(std::string_view text, std::string_view name,
     return city_of_grid(std::move(*grid), name, settings);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

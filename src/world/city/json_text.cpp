@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::string_view text_member(const nlohmann::json& value, const char* key) {
     return found.is_string() ? std::string_view(found.get_ref<const std::string&>()) : std::string_view();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "detail/place_on_earth.hpp"
 #include "world/city/footprint.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // Farther than any city from its origin: such a coordinate is as good as none.
@@ -264,4 +264,4 @@ Result<void> MeshBuilder::lay_on_map(CityFile& file) {
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

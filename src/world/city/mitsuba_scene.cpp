@@ -12,7 +12,7 @@
 #include "detail/mesh_builder.hpp"
 #include "detail/ply_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // Numbers between blanks and commas; empty when something else stands there.
@@ -160,4 +160,4 @@ Result<CityFile> parse_mitsuba(std::string_view xml, std::string_view name, cons
     return MitsubaReader(xml, name, settings, companions).read();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 #include "detail/city_text.hpp"
 #include "detail/mesh_builder.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -167,4 +167,4 @@ Result<CityFile> parse_obj(std::string_view text, std::string_view name, const C
     return ObjReader(without_byte_order_mark(text), name, settings).read();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "detail/city_text.hpp"
 #include "detail/osm_checks.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 /// Behind the comment that begins at `at`.
@@ -171,4 +171,4 @@ Result<void> check_pbf_blobs(std::string_view bytes, std::string_view name) {
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -13,7 +13,7 @@
 #include "detail/osm_checks.hpp"
 #include "detail/outlines.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -273,4 +273,4 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
     return city_of_outlines(reader.outlines(), format == "osm" ? "osm" : "osm.pbf", name, settings);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

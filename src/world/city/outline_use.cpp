@@ -5,7 +5,7 @@
 
 #include "detail/outlines.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -182,4 +182,4 @@ OutlineUse outline_use(const OutlineTags& tags, const CityFileSettings& settings
     return use;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 #include "detail/ear_clipper.hpp"
 #include "world/scene/city_model.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -282,4 +282,4 @@ Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::s
     return file;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -12,7 +12,7 @@
 #include "detail/place_on_earth.hpp"
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 bool is_decimal(char c) { return c >= '0' && c <= '9'; }
@@ -325,4 +325,4 @@ Eigen::Vector3d PlaceOnEarth::operator()(const Eigen::Vector3d& place) const {
     return {flat.x(), flat.y(), (place.z() - ground_) * metres_per_unit_};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

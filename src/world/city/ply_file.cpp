@@ -10,7 +10,7 @@
 #include "detail/city_text.hpp"
 #include "detail/ply_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 std::optional<PlyType> ply_type(std::string_view word) {
@@ -310,4 +310,4 @@ Result<CityFile> parse_ply(std::string_view bytes, std::string_view name, const 
     return builder.finish("ply");
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

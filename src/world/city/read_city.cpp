@@ -12,7 +12,7 @@
 #include "detail/companion_files.hpp"
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 namespace fs = std::filesystem;
@@ -280,4 +280,4 @@ Result<CityFile> read_city(const fs::path& path, const CityFileSettings& setting
     return city;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// One carrier of a satellite as it reaches the antenna.
 struct SignalArrival {
@@ -85,4 +85,4 @@ struct Arrivals {
     MetresPerSecond antenna_speed;  ///< over the ground
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -6,7 +6,7 @@
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What the records before the present one leave in a range, so that it does not step when the record changes.
 struct EarlierRecords {
@@ -18,4 +18,4 @@ struct EarlierRecords {
     std::optional<GpsTime> jumped;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "world/flow/observations.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// The antenna's supply, as u-blox numbers it (MON-HW aStatus).
 enum class AntennaStatus { initialising = 0, unknown = 1, ok = 2, short_circuit = 3, open = 4 };
@@ -45,4 +45,4 @@ struct Epoch {
     std::optional<RelativePosition> relative{};  ///< to the base antenna of a pair
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -14,7 +14,7 @@
 #include "world/gnss/dop.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Correlations of a solution's errors, beside how large they are: −1 … 1, and 1 of each with itself. They stay what
 /// they are while accuracies grow or are scaled.
@@ -132,4 +132,4 @@ struct Fix {
     }
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

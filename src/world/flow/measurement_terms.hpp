@@ -7,7 +7,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// The errors of one tracked signal.
 struct SignalTerms {
@@ -28,4 +28,4 @@ struct MeasurementTerms {
     std::vector<SignalTerms> signals;  ///< in the order of the observations
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

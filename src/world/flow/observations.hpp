@@ -12,7 +12,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What a base station nearby tells of a signal, and what the receiver has made of it: the errors of orbits, clocks and
 /// air that both ends of the baseline see.
@@ -59,4 +59,4 @@ struct Subframe {
     std::optional<Ephemeris> record{};  ///< that is whole with this part: the others were received before it
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -12,7 +12,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// How the vehicle is expected to move (u-blox: CFG-NAV5 dynModel).
 enum class DynamicModel { portable, stationary, pedestrian, automotive, sea, airborne_1g, airborne_2g, airborne_4g };
@@ -107,4 +107,4 @@ struct ReceiverSettings {
     }
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// One satellite above the horizon, seen with light time and Earth rotation.
 struct SatelliteInView {
@@ -37,4 +37,4 @@ struct SkyView {
     std::vector<SatelliteInView> satellites;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

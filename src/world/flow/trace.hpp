@@ -7,7 +7,7 @@
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// All values of one epoch. The receiver is handed `epoch` and nothing else.
 struct Trace {
@@ -19,4 +19,4 @@ struct Trace {
     bool measures = false;  ///< by a receiver that measures, though it may track nothing just now; sensor models do not
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

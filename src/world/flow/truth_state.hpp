@@ -9,7 +9,7 @@
 #include "base/geo/geodetic.hpp"
 #include "base/time/gps_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// How the vehicle stands and turns.
 struct Orientation {
@@ -26,4 +26,4 @@ struct TruthState {
     std::optional<Orientation> orientation{};  ///< of its vehicle; nothing: the path does not tell
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -8,7 +8,7 @@
 #include "detail/gmf_gpt_table.hpp"
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -276,4 +276,4 @@ TroposphereMapping vmf1_mapping(const Vmf1Coefficients& a, Angle latitude, Annua
             marini(vmf1_wet(a.a_wet), elevation)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

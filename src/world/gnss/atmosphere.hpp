@@ -12,7 +12,7 @@
 #include "world/gnss/dop.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What the single-frequency ionosphere model says of one direction, with the values on the way.
 struct KlobucharDelay {
@@ -144,4 +144,4 @@ MappingCoefficients vmf1_wet(double a_wet);
 /// sea level, add niell_height_correction() to the hydrostatic part (VMF1_HT.F).
 TroposphereMapping vmf1_mapping(const Vmf1Coefficients& a, Angle latitude, AnnualPhase phase, Angle elevation);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

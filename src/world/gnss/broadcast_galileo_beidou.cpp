@@ -2,7 +2,7 @@
 
 #include "detail/broadcast_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 using broadcast::power_of_two;
@@ -295,4 +295,4 @@ D1Words d1_subframe(const KeplerEphemeris& record, const std::optional<Klobuchar
     return with_d1_parity(bits);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 #include "world/gnss/ephemeris.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// An even and an odd page as u-blox hands them out [seen in captures]: four words each, 120 bits and 8 of 0.
 using InavWords = std::array<std::uint32_t, 8>;
@@ -49,4 +49,4 @@ using D1Words = std::array<std::uint32_t, 10>;
 D1Words d1_subframe(const KeplerEphemeris& record, const std::optional<KlobucharCoefficients>& ionosphere, int subframe,
                     GpsTime end);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

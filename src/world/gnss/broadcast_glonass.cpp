@@ -4,7 +4,7 @@
 
 #include "detail/broadcast_fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 using broadcast::power_of_two;
@@ -162,4 +162,4 @@ GlonassWords glonass_string(const GlonassEphemeris& record, int string, GpsTime 
     return {word(0), word(1), word(2), superframe << 16 | frame};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

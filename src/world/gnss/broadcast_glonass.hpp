@@ -8,7 +8,7 @@
 #include "base/time/utc_time.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// The 85 bits of a string, bit 85 in the highest bit of the first word; in the last word the number of the superframe
 /// since the start of GLONASS time's week, from 1 on, times 65536, plus that of the frame, 1 … 5 [seen in captures].
@@ -22,4 +22,4 @@ std::optional<int> glonass_string_ending(GpsTime end, const LeapSeconds& leap_se
 /// nearest that do. @param end when it ends
 GlonassWords glonass_string(const GlonassEphemeris& record, int string, GpsTime end, const LeapSeconds& leap_seconds);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

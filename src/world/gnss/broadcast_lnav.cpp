@@ -6,7 +6,7 @@
 #include "detail/broadcast_fields.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 int broadcast::accuracy_index(double metres) {
     constexpr std::array<double, 15> bounds{2.4, 3.4, 4.85, 6.85, 9.65, 13.65, 24,  48,
@@ -327,4 +327,4 @@ LnavWords lnav_system_subframe(const LnavSystemData& system, int subframe, GpsTi
     return lnav_words(with_header(subframe, end, page_of(page, subframe, number)));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "base/time/utc_time.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// The 24 data bits of each of the ten words of a subframe; parity comes later.
 using LnavData = std::array<std::uint32_t, 10>;
@@ -45,4 +45,4 @@ struct LnavSystemData {
 /// @param subframe 4 or 5
 LnavWords lnav_system_subframe(const LnavSystemData& system, int subframe, GpsTime end);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -1,7 +1,7 @@
 /// Constants of the interface documents (MODELS.md section 1).
 #pragma once
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Speed of light in vacuum, m/s (IS-GPS-200, 20.3.3.3.3.2).
 inline constexpr double speed_of_light = 299792458.0;
@@ -27,4 +27,4 @@ inline constexpr double carrier_frequency_l2 = 1227.60e6;
 /// GPS L5 and Galileo E5a, Hz.
 inline constexpr double carrier_frequency_l5 = 1176.45e6;
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

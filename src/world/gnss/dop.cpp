@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 std::optional<Eigen::Matrix4d> cofactor_matrix(std::span<const SkyDirection> satellites) {
     if (satellites.size() < 4) return std::nullopt;
@@ -37,4 +37,4 @@ std::optional<Dop> dilution_of_precision(std::span<const SkyDirection> satellite
     return dop;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

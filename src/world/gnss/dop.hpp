@@ -7,7 +7,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Dilutions of precision, dimensionless, and the cofactor matrix's variances east, north, up (MODELS.md 3.9). Not a
 /// number: unknown, since the satellites do not tell of that direction.
@@ -29,4 +29,4 @@ std::optional<Eigen::Matrix4d> cofactor_matrix(std::span<const SkyDirection> sat
 /// Nothing for fewer than four directions or a singular geometry.
 std::optional<Dop> dilution_of_precision(std::span<const SkyDirection> satellites);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "base/time/gps_time.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Which message brought a record. One satellite may send several with different clocks and group delays.
 enum class NavigationMessage {
@@ -182,4 +182,4 @@ public:
     [[nodiscard]] virtual std::string description() const = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "base/time/utc_time.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // Records further apart are not compared: extrapolated for half of it, a good orbit is still right within tens of
@@ -171,4 +171,4 @@ std::vector<DroppedRecord> drop_foreign_records(std::vector<Ephemeris>& records)
     return dropped;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

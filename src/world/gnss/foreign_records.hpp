@@ -6,7 +6,7 @@
 
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// A record that was taken out, and why.
 struct DroppedRecord {
@@ -22,4 +22,4 @@ struct DroppedRecord {
 /// those of SBAS satellites and almanacs are never dropped.
 std::vector<DroppedRecord> drop_foreign_records(std::vector<Ephemeris>& records);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

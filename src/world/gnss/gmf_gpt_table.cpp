@@ -1,6 +1,6 @@
 #include "detail/gmf_gpt_table.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 // Numbers of GMF (Boehm, Niell, Tregoning and Schuh 2006) and GPT (Boehm, Heinkelmann and Schuh 2007), in the order of
 // the fields of GmfGptTerm.
@@ -132,4 +132,4 @@ constexpr std::array<GmfGptTerm, 55> gmf_gpt_terms{{
      2.6421e-10, -4.6452e-09, 1.0749e-09, 7.7491e-09,  1.6134e-09, -9.2323e-09},
 }};
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -13,7 +13,7 @@
 #include "world/gnss/constants.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr std::chrono::days one_day{1};
@@ -340,4 +340,4 @@ std::optional<KeplerEphemeris> NominalConstellation::record(SatelliteId satellit
     return r;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

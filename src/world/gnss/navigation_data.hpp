@@ -11,7 +11,7 @@
 #include "base/core/result.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// How a record is chosen (MODELS.md 3.3 and D-02).
 struct EphemerisSelection {
@@ -115,4 +115,4 @@ private:
     BroadcastIonosphere ionosphere_;  // it says nothing of it
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

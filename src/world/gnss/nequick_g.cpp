@@ -12,7 +12,7 @@
 #include "base/core/number_text.hpp"
 #include "detail/nequick_profile.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // `count` numbers between spaces, commas and line ends.
@@ -210,4 +210,4 @@ Tecu nequick_slant_content(const NequickTables& tables, const EffectiveIonisatio
     return Tecu(content * 1e11 * 1e3 / 1e16);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

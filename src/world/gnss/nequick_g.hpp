@@ -13,7 +13,7 @@
 #include "base/geo/geodetic.hpp"
 #include "world/gnss/shell_ionosphere.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// One month of the CCIR numerical maps (ITU-R P.1239; CCIR Atlas, Report 340): for sunspot number 0 and 100, by term
 /// of place, then of time.
@@ -64,4 +64,4 @@ double nequick_ionisation(const EffectiveIonisation& broadcast, Angle modified_d
 Tecu nequick_slant_content(const NequickTables& tables, const EffectiveIonisation& broadcast, const Geodetic& receiver,
                            const Geodetic& satellite, double ut_hours);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

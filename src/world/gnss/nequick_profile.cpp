@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr double nequick_height_e = 120;  // of the E peak, km
@@ -230,4 +230,4 @@ double NequickProfile::above_peak(double height_km) const {
     return amplitude_f2_ * e / ((1 + e) * (1 + e));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

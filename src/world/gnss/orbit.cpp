@@ -9,7 +9,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // What differs between the systems of Kepler-type records.
@@ -248,4 +248,4 @@ const GlonassEphemeris& CarriedRecords::at(const GlonassEphemeris& record, GpsTi
     return kept.record;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

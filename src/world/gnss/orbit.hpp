@@ -12,7 +12,7 @@
 #include "world/gnss/constants.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Rz(ω_e τ): a vector in the ECEF frame of τ seconds ago as today's frame has it (MODELS.md 3.4). The series are exact
 /// to double precision for |τ| < 1 s.
@@ -72,4 +72,4 @@ private:
     std::map<SatelliteId, Carried> carried_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -8,7 +8,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr std::size_t lagrange_points = 11;
@@ -92,4 +92,4 @@ std::optional<PreciseState> PreciseOrbits::state(SatelliteId satellite, GpsTime 
     return PreciseState{Position<Ecef>(position), Velocity<Ecef>(velocity), clock_at(rows, time)};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "base/time/gps_time.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// One row of a table.
 struct PreciseSample {
@@ -46,4 +46,4 @@ private:
     Nanoseconds spacing_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

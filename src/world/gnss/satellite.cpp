@@ -4,7 +4,7 @@
 
 #include "base/core/number_text.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // All in the order of Constellation.
@@ -53,4 +53,4 @@ std::optional<SatelliteId> parse_satellite(std::string_view text) {
     return SatelliteId{*constellation, number};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Satellite systems, in the order in which receivers list them.
 enum class Constellation { gps, sbas, galileo, beidou, qzss, glonass, navic };
@@ -37,4 +37,4 @@ std::string to_string(SatelliteId satellite);
 /// Reads "G07" or "G 7".
 std::optional<SatelliteId> parse_satellite(std::string_view text);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

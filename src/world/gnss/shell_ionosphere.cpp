@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 double shell_ratio(const ThinShell& shell, Metres antenna_height) {
@@ -213,4 +213,4 @@ NtcmGContent ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic
     return content;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

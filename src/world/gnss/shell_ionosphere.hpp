@@ -12,7 +12,7 @@
 #include "base/time/utc_time.hpp"
 #include "world/gnss/dop.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// A spherical Earth with the shell at one height over it (IONEX 1.0; MODELS.md 7.2).
 struct ThinShell {
@@ -129,4 +129,4 @@ struct NtcmGContent {
 NtcmGContent ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic& place, const SkyDirection& direction,
                             const IonosphereTime& when);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

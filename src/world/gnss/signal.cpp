@@ -7,7 +7,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 using namespace std::chrono_literals;
@@ -340,4 +340,4 @@ DbHz cn0_under_interference(DbHz cn0, Decibels jammer_to_signal, const Interfere
     return DbHz(-10 * std::log10(noise + jammer));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

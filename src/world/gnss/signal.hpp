@@ -12,7 +12,7 @@
 #include "base/time/gps_time.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// A carrier of one or more systems.
 enum class Signal {
@@ -114,4 +114,4 @@ struct InterferenceRejection {
 /// MODELS.md 7.7).
 DbHz cn0_under_interference(DbHz cn0, Decibels jammer_to_signal, const InterferenceRejection& rejection = {});
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -17,7 +17,7 @@
 #include "base/core/number_text.hpp"
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// One line of numbers; a table has at most three columns.
 struct NumberRow {
@@ -248,4 +248,4 @@ DecibelWattsPerHertz noise_density(Kelvin temperature) {
     return DecibelWattsPerHertz(10 * std::log10(boltzmann_constant * temperature.value()));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 #include "base/core/units.hpp"
 #include "world/gnss/dop.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// The gain of a patch or survey antenna, G0 − d (1 − sin e)^p dBic (MODELS.md 7.7), or that of a table.
 class AntennaPattern {
@@ -79,4 +79,4 @@ Kelvin system_temperature(const ReceiverNoise& noise);
 /// N0 = 10 log10(k T) (MODELS.md 7.7).
 DecibelWattsPerHertz noise_density(Kelvin temperature);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

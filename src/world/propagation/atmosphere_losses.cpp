@@ -11,7 +11,7 @@
 #include "world/propagation/sensor_model_delays.hpp"
 #include "world/propagation/specific_attenuation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr std::array<double, 20> gas_elevations_deg{0.5, 0.75, 1,  1.25, 1.5, 2,  2.5, 3,  4,  5,
@@ -158,4 +158,4 @@ void FoliageLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

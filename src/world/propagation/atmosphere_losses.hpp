@@ -12,7 +12,7 @@
 #include "world/propagation/propagation_parameters.hpp"
 #include "world/propagation/specific_attenuation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// slant_gas_attenuation_p676() from a table, to within 1e-4 dB from 0.5° and heights of 0 … 20 km; the integral itself
 /// takes milliseconds. Constant below 0.5° and above 20 km, where what is left at L1 is below 0.03 dB.
@@ -97,4 +97,4 @@ private:
     double factor_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

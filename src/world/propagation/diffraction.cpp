@@ -12,7 +12,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 double knife_edge_parameter(Angle detour, Metres distance, Hertz carrier) {
     return detour.rad() * std::sqrt(2 * distance.value() * carrier.value() / speed_of_light);
@@ -230,4 +230,4 @@ std::vector<SceneEdge> edges_near_sight(const UrbanScene& scene, const SceneRay&
     return edges_at(scene, fan, sides, std::move(changes), false);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

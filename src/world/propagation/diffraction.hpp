@@ -9,7 +9,7 @@
 #include "base/core/units.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Below this a wave passes clear of the edge.
 constexpr double knife_edge_clear = -0.78;
@@ -45,4 +45,4 @@ std::vector<SceneEdge> edges_around_obstacle(const UrbanScene& scene, const Scen
 /// a wave of this carrier does not pass clear of it; at most one towards each of four sides. The ground is no edge.
 std::vector<SceneEdge> edges_near_sight(const UrbanScene& scene, const SceneRay& to_satellite, Hertz carrier);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -5,7 +5,7 @@
 
 #include "world/propagation/reference_air.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 // ITU-R P.676-13, Annex 1, table 1.
 constexpr std::array<OxygenLine, 44> oxygen_lines_p676{{
@@ -172,4 +172,4 @@ std::vector<Decibels> slant_gas_attenuation_p676(Hertz carrier, std::span<const 
     return losses;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "world/propagation/reference_air.hpp"
 #include "world/propagation/specific_attenuation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// A line at f0 GHz with the parameters a1 … a6 of table 1.
 struct OxygenLine {
@@ -41,4 +41,4 @@ Decibels slant_gas_attenuation_p676(Hertz carrier, Angle apparent, Metres antenn
 /// The same along several rays from one antenna, for little more than the price of one.
 std::vector<Decibels> slant_gas_attenuation_p676(Hertz carrier, std::span<const Angle> apparent, Metres antenna_height);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

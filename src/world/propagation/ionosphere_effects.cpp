@@ -18,7 +18,7 @@
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/ray_geometry.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 SkyDirection direction_of(const SatelliteInView& satellite) { return {satellite.azimuth, satellite.elevation}; }
@@ -306,4 +306,4 @@ void ScintillationIndices::apply(Arrivals& arrivals, const SkyView& sky, const T
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -17,7 +17,7 @@
 #include "world/propagation/modern_parameters.hpp"
 #include "world/propagation/propagation_effect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// How much a model of the ionosphere delays the code of a satellite.
 class IonosphereTruth {
@@ -105,4 +105,4 @@ private:
     LeapSeconds leap_seconds_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

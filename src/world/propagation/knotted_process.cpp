@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr double knots_of_memory = 10;
@@ -75,4 +75,4 @@ double KnottedProcess::at(GpsTime time) {
     return from + u * (slope_from + u * (c2 + u * c3));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -13,7 +13,7 @@
 #include "base/time/gps_time.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// States by satellite, in a sorted vector: few, and looked up at every epoch.
 template <class State>
@@ -66,4 +66,4 @@ private:
     double rate_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -8,7 +8,7 @@
 #include "world/propagation/signal_in_space_error.hpp"
 #include "world/propagation/troposphere_delay.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 bool residual_wanted(const IonosphereParameters& parameters, std::optional<IonosphereModel> correction) {
@@ -43,4 +43,4 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const Mod
     return effects;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -19,7 +19,7 @@
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/propagation_parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What the effects need to know of the run.
 struct ModernContext {
@@ -47,4 +47,4 @@ struct ModernContext {
 Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const ModernPropagationParameters& parameters,
                                                                        const ModernContext& context);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

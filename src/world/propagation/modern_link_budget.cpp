@@ -8,7 +8,7 @@
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/ray_geometry.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // No estimator tells more, nor a sentence with two digits, however strong a scenario makes its satellites.
@@ -180,4 +180,4 @@ void ModernLinkBudget::apply(Arrivals& arrivals, const SkyView& sky, const Truth
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

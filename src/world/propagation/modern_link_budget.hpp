@@ -7,7 +7,7 @@
 #include "world/propagation/modern_parameters.hpp"
 #include "world/propagation/propagation_effect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Power of a signal over the satellite's first one, by the minimum powers of the interface documents.
 /// @param range tells BeiDou's satellites in geosynchronous orbits from the others
@@ -45,4 +45,4 @@ private:
     PerSatellite<Power> powers_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

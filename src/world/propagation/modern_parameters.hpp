@@ -12,7 +12,7 @@
 #include "world/gnss/signal.hpp"
 #include "world/propagation/antenna_and_noise.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// How far orbits and clocks are from what is broadcast: 1 σ of the user's range error of each system, SISRE
 /// (MODELS.md 7.1).
@@ -173,4 +173,4 @@ struct ModernPropagationParameters {
     ErrorTerm interference;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 
 #include "base/time/utc_time.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 std::string gps_day(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
@@ -50,4 +50,4 @@ Result<void> check_coverage(const NamedIonosphereMaps& maps, const TimeSpan& run
     return {};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 #include "world/gnss/ephemeris.hpp"
 #include "world/gnss/shell_ionosphere.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Maps of the ionosphere and where they come from.
 struct NamedIonosphereMaps {
@@ -20,4 +20,4 @@ struct NamedIonosphereMaps {
 /// @param run its first and last instant
 Result<void> check_coverage(const NamedIonosphereMaps& maps, const TimeSpan& run);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

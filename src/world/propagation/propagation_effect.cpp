@@ -5,7 +5,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 Decibels free_space_loss(Metres distance, Hertz carrier) {
     return Decibels(20 * std::log10(4 * std::numbers::pi * distance.value() * carrier.value() / speed_of_light));
@@ -42,4 +42,4 @@ Arrivals free_space(const SkyView& sky) {
     return arrivals;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

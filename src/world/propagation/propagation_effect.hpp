@@ -8,7 +8,7 @@
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Changes what arrives. Effects are applied in a fixed order; each writes only the fields of its own cause.
 class PropagationEffect {
@@ -38,4 +38,4 @@ inline void hide(Arrival& arrival) {
     arrival.cn0.reset();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -1,6 +1,6 @@
 #include "world/propagation/propagation_parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 std::vector<AtmosphericLayer> default_layers() {
     return {
@@ -32,4 +32,4 @@ const std::vector<Environment>& environment_catalogue() {
     return environments;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// How the equivalent concentration k of a layer is taken (MODELS.md 3.6).
 enum class ConcentrationMode {
@@ -124,4 +124,4 @@ struct WholePathParameters {
     double vapour_db_per_km_per_g_m3 = 1.68767e-5;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

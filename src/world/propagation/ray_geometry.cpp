@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 Metres path_to_height(const SphericalRay& ray, Metres height) {
     const double start = (ray.earth_radius + ray.antenna_height).value();
@@ -28,4 +28,4 @@ Angle off_boresight_angle(const SphericalRay& ray, Metres orbit_radius) {
     return Angle::radians(std::asin(start * std::cos(ray.elevation.rad()) / orbit_radius.value()));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

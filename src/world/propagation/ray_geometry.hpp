@@ -9,7 +9,7 @@
 #include "base/geo/geodetic.hpp"
 #include "base/geo/geoid.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// The elevation, or 0.01° below it: a satellite on the very horizon has a large delay, not an infinite one.
 inline Angle above_horizon(Angle elevation) { return std::max(elevation, Angle::degrees(0.01)); }
@@ -41,4 +41,4 @@ Angle elevation_at_height(const SphericalRay& ray, Metres height);
 /// @param orbit_radius from the centre of the Earth
 Angle off_boresight_angle(const SphericalRay& ray, Metres orbit_radius);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

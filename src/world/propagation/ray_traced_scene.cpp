@@ -18,7 +18,7 @@
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/reflection.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// A way to the antenna, in the scene's frame.
 struct ArrivingRay {
@@ -295,4 +295,4 @@ void RayTracedScene::apply(Arrivals& arrivals, const SkyView& sky, const TruthSt
         notice_ = closed_in_notice(scene(), observer_.position);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 #include "world/propagation/propagation_effect.hpp"
 #include "world/scene/path_finder.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What walls do to the signals.
 enum class SceneProfile {
@@ -73,4 +73,4 @@ private:
     std::optional<std::string> notice_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

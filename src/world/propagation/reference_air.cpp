@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // A layer of constant temperature gradient, by geopotential height.
@@ -63,4 +63,4 @@ Refractivity refractivity_p453(double dry_pressure_hpa, Kelvin temperature, doub
     return {77.6 * dry_pressure_hpa / t, (72 + 3.75e5 / t) * vapour_pressure_hpa / t};
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

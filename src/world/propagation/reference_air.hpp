@@ -4,7 +4,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Air at one height.
 struct ReferenceAir {
@@ -35,4 +35,4 @@ struct Refractivity {
 /// @param dry_pressure_hpa of the air without its vapour, hPa  @param vapour_pressure_hpa hPa
 Refractivity refractivity_p453(double dry_pressure_hpa, Kelvin temperature, double vapour_pressure_hpa);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "world/gnss/constants.hpp"
 #include "world/scene/scene_path.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr double vacuum_permittivity = 8.8541878128e-12;  // F/m, CODATA 2018
@@ -121,4 +121,4 @@ std::complex<double> heard_by_right_hand(const CircularWave& wave, Decibels reje
     return std::polar(std::hypot(std::abs(wave.right), std::abs(left)), phase);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 
 #include "base/core/units.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Permittivity a f^b and conductivity c f^d S/m, f in GHz (ITU-R P.2040, table of material properties).
 struct SurfaceMaterial {
@@ -72,4 +72,4 @@ CircularWave reflected_wave(std::span<const ReflectingSurface> surfaces, const E
 /// ports is the antenna's own and unknown: powers add, the stronger one tells the phase.
 std::complex<double> heard_by_right_hand(const CircularWave& wave, Decibels rejection);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

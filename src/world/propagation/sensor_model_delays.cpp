@@ -9,7 +9,7 @@
 #include "world/gnss/atmosphere.hpp"
 #include "world/propagation/ray_geometry.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // Delay at L1 of one TECU, m, with the article's three digits (40.3·10¹⁶/f² = 0.1624).
@@ -151,4 +151,4 @@ void RefractionDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthS
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -14,7 +14,7 @@
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/propagation_parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Slant over vertical delay, 1 + 2.74·10⁻⁶ (96° − e)³ (MODELS.md 3.7, F_p).
 double ionosphere_obliquity(Angle elevation);
@@ -104,4 +104,4 @@ private:
     const Geoid* geoid_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

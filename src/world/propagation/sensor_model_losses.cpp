@@ -7,7 +7,7 @@
 
 #include "world/propagation/ray_geometry.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 template <class Shells>
@@ -109,4 +109,4 @@ void LinkBudget::apply(Arrivals& arrivals, const SkyView& /*sky*/, const TruthSt
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 #include "world/propagation/propagation_parameters.hpp"
 #include "world/propagation/specific_attenuation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Losses over straight paths through uniform spherical shells (MODELS.md 3.6). Writes gas, cloud, rain and ionospheric
 /// loss. Layers are heights above the sphere; the antenna's is its ellipsoidal height, as h is in MODELS.md, which asks
@@ -71,4 +71,4 @@ private:
     Decibels environment_noise_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

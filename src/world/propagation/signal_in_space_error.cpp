@@ -6,7 +6,7 @@
 
 #include "world/gnss/constants.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr Nanoseconds orbit_error_spacing = std::chrono::seconds(60);
@@ -132,4 +132,4 @@ void SignalInSpaceError::apply(Arrivals& arrivals, const SkyView& sky, const Tru
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 #include "world/propagation/modern_parameters.hpp"
 #include "world/propagation/propagation_effect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// 1 σ of the parts of a satellite's error, m.
 struct OrbitClockSigmas {
@@ -50,4 +50,4 @@ private:
     PerSatellite<Parts> parts_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // One bell of P.838-3's sums: height, centre and width on a logarithmic frequency axis.
@@ -133,4 +133,4 @@ DecibelsPerKilometre cloud_attenuation_p840(Hertz carrier, Kelvin temperature, d
     return DecibelsPerKilometre(cloud_liquid_coefficient_p840(carrier, temperature) * liquid_water_g_m3);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 #include "base/core/units.hpp"
 #include "world/propagation/propagation_parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Attenuation per length, dB/km: the unit in which all its sources give it.
 using DecibelsPerKilometre = Quantity<struct DecibelsPerKilometreUnit>;
@@ -56,4 +56,4 @@ double cloud_liquid_coefficient_p840(Hertz carrier, Kelvin temperature);
 /// K_l times the content of liquid water.
 DecibelsPerKilometre cloud_attenuation_p840(Hertz carrier, Kelvin temperature, double liquid_water_g_m3);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

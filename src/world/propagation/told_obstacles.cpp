@@ -6,7 +6,7 @@
 
 #include "world/propagation/propagation_effect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 using Reflection = ToldPath::Reflection;
@@ -55,4 +55,4 @@ void ToldObstacles::apply(Arrivals& arrivals, const SkyView&, const TruthState&)
         if (const auto told = told_->find(arrival.id); told != told_->end()) arrive_as_told(arrival, told->second);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

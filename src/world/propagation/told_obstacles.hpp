@@ -7,7 +7,7 @@
 #include "base/core/std_additions.hpp"
 #include "world/propagation/propagation_effect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What is told of the way from one satellite to the antenna.
 struct ToldPath {
@@ -41,4 +41,4 @@ private:
     std::shared_ptr<const ToldPaths> told_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "world/propagation/ray_geometry.hpp"
 #include "world/propagation/reference_air.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr Nanoseconds troposphere_spacing = std::chrono::seconds(60);
@@ -134,4 +134,4 @@ void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const Truth
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/propagation_parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Random walk of the zenith wet delay, m/√h: more in rain, and most in a thunderstorm (MODELS.md 7.3).
 Metres wet_delay_walk(const TroposphereParameters& parameters, const AtmosphereParameters& atmosphere);
@@ -42,4 +42,4 @@ private:
     KnottedProcess wander_, walk_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -12,7 +12,7 @@
 #include "base/core/words.hpp"
 #include "detail/fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace rinex {
 namespace {
 
@@ -305,4 +305,4 @@ Result<std::vector<KeplerEphemeris>> read_almanac(std::string_view text, std::st
     return fail(ErrorCode::input, fmt::format("{}:1: found no almanac; expected YUMA or SEM", name));
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 #include "base/core/result.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// True for a text that begins as a YUMA or SEM almanac does.
 bool is_almanac(std::string_view text);
@@ -19,4 +19,4 @@ bool is_almanac(std::string_view text);
 /// @param near an instant from which the almanac lies less than ten years: its week may be reduced modulo 1024
 Result<std::vector<KeplerEphemeris>> read_almanac(std::string_view text, std::string_view name, GpsTime near);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -13,7 +13,7 @@
 #include "base/core/files.hpp"
 #include "detail/fields.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 namespace {
 
 constexpr int highest_order = 9, most_types = 200;
@@ -270,4 +270,4 @@ Result<std::string> from_compact(std::string_view text, std::string_view name) {
     return CompactReading(text, name).read();
 }
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

@@ -5,7 +5,7 @@
 
 #include "base/core/number_text.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 std::optional<Line> LineReader::next() {
     if (rest_.empty()) return std::nullopt;
@@ -69,4 +69,4 @@ std::string in_quotes(std::string_view text) {
     return result + (text.size() > longest ? "…'" : "'");
 }
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

@@ -9,7 +9,7 @@
 #include "base/core/files.hpp"
 #include "detail/fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace rinex {
 namespace {
 
@@ -226,4 +226,4 @@ Result<IonosphereMaps> read_ionex_file(const std::filesystem::path& path) {
     return read_ionex(*text, path.string());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

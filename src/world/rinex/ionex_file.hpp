@@ -8,7 +8,7 @@
 #include "base/time/utc_time.hpp"
 #include "world/gnss/shell_ionosphere.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Reads the two-dimensional TEC maps of an IONEX 1.0 or 1.1 text; maps of RMS and height are passed over. Epochs are
 /// UT and taken as UTC.
@@ -21,4 +21,4 @@ Result<IonosphereMaps> read_ionex(std::string_view text, std::string_view name,
 /// The same for a file, packed or not. Fails as read_text_file and read_ionex do.
 Result<IonosphereMaps> read_ionex_file(const std::filesystem::path& path);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

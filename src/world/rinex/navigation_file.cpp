@@ -15,7 +15,7 @@
 #include "detail/navigation_header.hpp"
 #include "detail/navigation_record.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 /// "> EPH G02 LNAV"; of coefficients of a whole system "> ION G   LNAV", too.
 struct BlockHead {
@@ -134,9 +134,9 @@ std::optional<TimeSystemCorrection> read_time_offset(std::span<const Line> lines
     return TimeSystemCorrection{std::string(type), *a0, *a1, *tow, 0};
 }
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace rinex {
 namespace {
@@ -330,4 +330,4 @@ Result<NavigationFile> read_navigation_file(const std::filesystem::path& path) {
     return read_navigation(*text, path.string());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "base/core/result.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// How many records of a file were passed over, by reason.
 struct SkippedRecords {
@@ -58,4 +58,4 @@ Result<NavigationFile> read_navigation(std::string_view text, std::string_view n
 /// The same for a file, packed or not. Fails as read_text_file and read_navigation do.
 Result<NavigationFile> read_navigation_file(const std::filesystem::path& path);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

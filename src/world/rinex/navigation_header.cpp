@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 namespace {
 
 constexpr std::string_view version_label = "RINEX VERSION / TYPE";
@@ -240,4 +240,4 @@ Result<NavigationHeader> read_header(LineReader& lines, std::string_view name) {
     return header_error(name, lines.number(), "the end of the file within the header", "'END OF HEADER' and records");
 }
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

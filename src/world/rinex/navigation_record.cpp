@@ -7,7 +7,7 @@
 #include "base/time/utc_time.hpp"
 #include "detail/navigation_record.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 namespace {
 
 constexpr std::size_t field_width = 19;
@@ -302,4 +302,4 @@ tl::expected<Ephemeris, Defect> read_record(const RecordKind& kind, std::span<co
     }
 }
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

@@ -5,7 +5,7 @@
 
 #include "base/time/utc_time.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 namespace {
 
 // Columns of the parts of an epoch's first line.
@@ -172,4 +172,4 @@ void SignalReading::follow_phase(Observation& observation, GpsTime time, std::si
     observation.lock_time = difference(time, history.since);
 }
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

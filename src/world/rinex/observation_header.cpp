@@ -5,7 +5,7 @@
 
 #include "detail/observation_header.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 namespace {
 
 // A band of a system and the attributes of its codes, the best first (RINEX 3.05, tables 12 to 18). In version 2 the
@@ -334,4 +334,4 @@ void ObservationHeaderReading::warn(const Line& line, std::string_view found, st
         fmt::format("{}:{}: found {}; expected {}; line passed over", name_, line.number, found, expected));
 }
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

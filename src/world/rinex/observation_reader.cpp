@@ -11,7 +11,7 @@
 #include "detail/observation_epochs.hpp"
 #include "detail/observation_header.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace rinex {
 namespace {
 
@@ -257,4 +257,4 @@ Result<ObservationFile> read_observation_file(const std::filesystem::path& path)
     return read_observations(*text, path.string());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -12,7 +12,7 @@
 #include "base/geo/frames.hpp"
 #include "world/flow/observations.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// How much of an observation file was passed over, by reason.
 struct SkippedObservations {
@@ -63,4 +63,4 @@ Result<ObservationFile> read_observations(std::string_view text, std::string_vie
 /// The same for a file, packed or not. Fails as read_text_file and read_observations do.
 Result<ObservationFile> read_observation_file(const std::filesystem::path& path);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

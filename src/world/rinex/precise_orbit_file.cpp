@@ -11,7 +11,7 @@
 #include "base/time/utc_time.hpp"
 #include "detail/fields.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace rinex {
 namespace {
 
@@ -184,4 +184,4 @@ Result<PreciseOrbitFile> read_precise_orbit_file(const std::filesystem::path& pa
     return read_precise_orbits(*text, path.string());
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

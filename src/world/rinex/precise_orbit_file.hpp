@@ -8,7 +8,7 @@
 #include "base/core/result.hpp"
 #include "world/gnss/precise_orbits.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What an SP3 file holds.
 struct PreciseOrbitFile {
@@ -30,4 +30,4 @@ Result<PreciseOrbitFile> read_precise_orbits(std::string_view text, std::string_
 /// The same for a file, packed or not. Fails as read_text_file and read_precise_orbits do.
 Result<PreciseOrbitFile> read_precise_orbit_file(const std::filesystem::path& path);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -15,7 +15,7 @@
 #include "base/time/gps_time.hpp"
 #include "base/time/utc_time.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 /// A header line: content in columns 1-60, label in 61-80, and its end.
 std::string header_line(std::string_view content, std::string_view label);
@@ -45,9 +45,9 @@ std::string program_line(std::string_view program, GpsTime time) {
                        "PGM / RUN BY / DATE");
 }
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace rinex {
 namespace {
@@ -355,4 +355,4 @@ std::string ObservationWriter::epoch(const Observations& observations) const {
            rows;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

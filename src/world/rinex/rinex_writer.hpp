@@ -12,7 +12,7 @@
 #include "world/flow/observations.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What stands before the records.
 struct NavigationTextHeader {
@@ -71,4 +71,4 @@ private:
     ObservationHeader header_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

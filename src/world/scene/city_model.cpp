@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 std::uint8_t CityModel::material_index(std::string_view name) {
     const auto known = std::find(materials.begin(), materials.end(), name);
@@ -92,4 +92,4 @@ std::vector<Ring> ring_pieces(Ring ring, double width) {
     return pieces;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

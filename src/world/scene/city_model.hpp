@@ -14,7 +14,7 @@
 #include "base/core/units.hpp"
 #include "base/geo/geodetic.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What a surface is for: walls reflect in every profile, roofs and ground where a profile says so.
 enum class SurfaceKind : std::uint8_t { wall, roof, ground };
@@ -69,4 +69,4 @@ struct CityModel {
 /// number.
 std::vector<std::vector<Eigen::Vector2d>> ring_pieces(std::vector<Eigen::Vector2d> ring, double width);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 using LongVector = Eigen::Matrix<long double, 3, 1>;
@@ -262,4 +262,4 @@ std::vector<SatellitePaths> exhaustive_paths(const UrbanScene& scene, const Scen
     return result;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

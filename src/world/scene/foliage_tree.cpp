@@ -8,7 +8,7 @@
 #include "detail/foliage_tree.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Gathered volume by volume. Woods overlap, where one is drawn within another or two files hold the same one: a metre
 /// in several crowns is one metre.
@@ -195,4 +195,4 @@ double FoliageTree::length(const SceneRay& ray, double reach) const {
     return crowns.metres();
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

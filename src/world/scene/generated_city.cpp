@@ -8,7 +8,7 @@
 #include "base/core/random.hpp"
 #include "detail/house_shapes.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // Blocks of three by two houses, one every 92 by 68 m, with streets of 20 m between them.
@@ -311,4 +311,4 @@ private:
 
 CityModel demo_city(const Geodetic& origin) { return DemoCity(origin).build(); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -6,7 +6,7 @@
 
 #include "world/scene/city_model.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Blocks of houses along a grid of streets 20 m wide, most of them a few degrees off the grid, low and high ones.
 struct GeneratedCitySettings {
@@ -40,4 +40,4 @@ CityModel street_canyon(const StreetCanyonSettings& settings, const Geodetic& or
 /// an arch of glass and a park.
 CityModel demo_city(const Geodetic& origin);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr int triangles_of_cell = 18;
@@ -121,4 +121,4 @@ void add_ground(CityModel& city, double half_width, std::uint8_t material) {
     city.add_quad({{{-e, -e, 0}, {e, -e, 0}, {e, e, 0}, {-e, e, 0}}}, SurfaceKind::ground, material);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

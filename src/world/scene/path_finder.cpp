@@ -9,7 +9,7 @@
 #include "detail/path_refiner.hpp"
 #include "detail/path_search.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// A path that is lost behind an edge is likely to come back: it is kept dormant for a while and tried again each
 /// epoch, which costs a microsecond.
@@ -244,4 +244,4 @@ std::vector<SatellitePaths> PathFinder::Parts::results(const SceneObserver& obse
     return answer;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 #include "world/scene/scene_path.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What reflects, how far, and how paths are sought.
 struct PathSearchSettings {
@@ -81,4 +81,4 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -5,7 +5,7 @@
 
 #include "detail/path_refiner.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr std::size_t planes_per_ray = most_reflections;
@@ -182,4 +182,4 @@ void PathRefiner::judge(const Guess& guess, const EscapedRay& ray, std::vector<F
         propose(guess.target, met, guess.hops + 1);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

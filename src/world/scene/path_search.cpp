@@ -7,7 +7,7 @@
 
 #include "detail/path_search.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 void SightLines::look(const UrbanScene& scene, const Eigen::Vector3d& antenna,
                       std::span<const SceneSatellite> satellites) {
@@ -185,4 +185,4 @@ void PathSearch::trace_chunk(std::size_t chunk, std::size_t worker) {
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -300,4 +300,4 @@ MergedPlanes merge_planes(std::span<const Eigen::Vector3d> vertices, std::span<c
     return merged;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

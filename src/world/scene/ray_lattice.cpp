@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
@@ -88,4 +88,4 @@ void RayLattice::select_half(std::span<const ElevationBand> bands, double sign, 
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

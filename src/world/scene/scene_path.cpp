@@ -4,7 +4,7 @@
 
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 double nearer_by(const Eigen::Vector3d& b, const Eigen::Vector3d& a, const Eigen::Vector3d& satellite) {
     const Eigen::Vector3d both = 2 * satellite - b - a;
@@ -59,4 +59,4 @@ std::vector<double> incidence_cosines(const UrbanScene& scene, const ScenePath& 
     return cosines;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "base/core/std_additions.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 class UrbanScene;
 
@@ -78,4 +78,4 @@ std::vector<Eigen::Vector3d> reflection_points(const UrbanScene& scene, const Sc
 /// Cosine of the angle of incidence at each reflection, from the antenna outwards.
 std::vector<double> incidence_cosines(const UrbanScene& scene, const ScenePath& path);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -6,7 +6,7 @@
 
 #include "base/core/threads.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 SearchCrew::SearchCrew(int threads) {
     with_signals_held_back([this, threads] {
         try {
@@ -91,4 +91,4 @@ void SearchCrew::work(std::size_t worker) {
     }
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -8,7 +8,7 @@
 
 #include "world/scene/city_model.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 constexpr double wood_on_slope = 60;  // m, of one prism
@@ -75,4 +75,4 @@ std::size_t stand_on_terrain(CityModel& city, const UrbanScene& terrain) {
     return beyond;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

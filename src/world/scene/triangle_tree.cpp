@@ -12,7 +12,7 @@
 #include <atomic>
 #include <cmath>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -240,4 +240,4 @@ std::array<TreeHit, TriangleTree::width> TriangleTree::nearest(std::span<const S
 std::size_t TriangleTree::memory() const { return static_cast<std::size_t>(parts_->memory.load()); }
 std::size_t TriangleTree::most_memory() const { return static_cast<std::size_t>(parts_->most_memory.load()); }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

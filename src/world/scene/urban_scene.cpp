@@ -12,7 +12,7 @@
 #include "detail/plane_merge.hpp"
 #include "detail/triangle_tree.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 namespace {
 
@@ -326,4 +326,4 @@ bool sees_no_sky(const UrbanScene& scene, const Eigen::Vector3d& place) {
     return std::ranges::all_of(answers, [](std::uint8_t blocked) { return blocked != 0; });
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -20,7 +20,7 @@
 #include "base/geo/local_frame.hpp"
 #include "world/scene/city_model.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// All facets that lie within a millimetre of one plane, of one kind and material: points x with normal·x = offset.
 struct ScenePlane {
@@ -136,4 +136,4 @@ inline Eigen::Vector3d direction_towards(Angle azimuth, Angle elevation) {
 /// mean of theirs. Both are in one frame. @returns how many stand beyond the terrain and stay as they were
 std::size_t stand_on_terrain(CityModel& city, const UrbanScene& terrain);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

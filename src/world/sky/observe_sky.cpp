@@ -10,7 +10,7 @@
 #include "world/gnss/orbit.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 Position<Ecef> in_reception_frame(const Position<Ecef>& at_transmission, Seconds travel_time) {
     return Position<Ecef>(turned_by(at_transmission.vector(), travel_time.value()));
@@ -271,4 +271,4 @@ SkyView observe_sky(const TruthState& truth, const NavigationSource& source) {
     return observer.observe(truth, source);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -17,7 +17,7 @@
 #include "world/gnss/ephemeris.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// A point and how it moves in the Earth-fixed frame.
 struct EcefMotion {
@@ -106,4 +106,4 @@ private:
     Position<Ecef> looked_from_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

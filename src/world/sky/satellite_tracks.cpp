@@ -6,7 +6,7 @@
 #include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 namespace {
 
 // How far from the track records are looked for, and how densely: no broadcast record is renewed more often.
@@ -66,4 +66,4 @@ std::vector<SatelliteTrack> satellite_tracks(const NavigationSource& source, con
     return tracks;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 #include "base/geo/frames.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// One point of a track.
 struct TrackPoint {
@@ -33,4 +33,4 @@ struct TrackTimes {
 /// ephemeris, and an SBAS satellite stands where it last was. Satellites without such a record are absent.
 std::vector<SatelliteTrack> satellite_tracks(const NavigationSource& source, const TrackTimes& times);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

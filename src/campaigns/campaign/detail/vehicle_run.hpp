@@ -13,7 +13,7 @@
 #include "run/emulator/assembly.hpp"
 #include "run/verdict/verdict.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// The words of a command for /bin/sh that have a slash and are programs, seen from the working folder: regular files
 /// that may be executed, begin with `#!`, or end in .py, .sh or .lua. Not what it writes, with `>` or by an option as a
@@ -37,4 +37,4 @@ Result<Verdict> run_with_vehicle(Assembly& assembly, const CampaignVehicle& vehi
 /// 127, by which a shell says that there was no program to run.
 Result<Verdict> vehicle_verdict(const ProcessOutcome& outcome, Seconds timeout);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

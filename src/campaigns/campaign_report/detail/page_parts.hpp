@@ -8,7 +8,7 @@
 #include "campaigns/campaign_report/campaign_results.hpp"
 #include "campaigns/campaign_report/campaign_summary.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// Text of the database or of our own, for the content of an element or an attribute.
 std::string page_text(std::string_view text, std::size_t most = 200);
@@ -43,4 +43,4 @@ std::string method_section(const CampaignSummary& summary);
 std::string effect_picture(const CampaignResults& results, const CampaignSummary& summary, const MetricSummary& metric,
                            const Effect& effect);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

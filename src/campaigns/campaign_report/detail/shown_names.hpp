@@ -9,7 +9,7 @@
 
 #include "campaigns/campaign_report/campaign_summary.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// `text` on one line: control characters and what is not UTF-8 as '?', after `most` characters cut with "…".
 std::string shown_text(std::string_view text, std::size_t most = 200);
@@ -49,4 +49,4 @@ std::string percent_interval_text(const Interval& interval);
 /// "p < 0.001" and the like.
 std::string p_value_text(double p);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -13,7 +13,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline campaigns {
 
 /// One row of an answer. Columns count from 0.
 class SqliteRow {
@@ -57,4 +57,4 @@ private:
     std::unique_ptr<sqlite3, Closer> database_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline campaigns

@@ -9,7 +9,7 @@
 #include "flight_log.hpp"
 #include "receiver/observed/dataflash.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // A place in metres from an origin, north, east, down, and the velocity there.
 struct LocalSample {
@@ -58,4 +58,4 @@ private:
     void take_receiver(const DataflashRecord& record, std::int64_t ns);
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

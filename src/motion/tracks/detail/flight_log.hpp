@@ -18,7 +18,7 @@
 #include "base/geo/geodetic.hpp"
 #include "track_formats.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // A place in degrees and metres above the sea.
 struct GlobalSample {
@@ -158,4 +158,4 @@ std::optional<std::int64_t> middle_offset(std::vector<std::int64_t>& offsets);
 // "3 records … ", when there are any.
 void add_count_note(std::vector<std::string>& notes, std::size_t count, const std::string& what);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -8,7 +8,7 @@
 
 #include "track_formats.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // One item (MAVLink common.xml, MISSION_ITEM and MAV_CMD).
 struct MissionItem {
@@ -48,4 +48,4 @@ std::optional<VehicleClass> vehicle_of_mav_type(int type);
 // One that takes off as a multirotor and cruises as a plane.
 bool is_vtol_mav_type(int type);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -16,7 +16,7 @@
 #include "base/time/utc_time.hpp"
 #include "track_formats.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // One row of a text file: what is absent there is absent here.
 struct TextRow {
@@ -194,4 +194,4 @@ Result<Track> read_gnss_logger(const TrackFile& file);
 bool is_shaped_dialect(const TrackFile& file);
 Result<Track> read_shaped_dialect(const TrackFile& file);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 #include "flight_log.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // A frame and when the ground station had it.
 struct TlogFrame {
@@ -71,4 +71,4 @@ private:
     bool is_autopilot_ = false, is_ardupilot_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

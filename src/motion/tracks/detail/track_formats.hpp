@@ -3,7 +3,7 @@
 
 #include "motion/tracks/read_track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // The whole file, and what its reader needs to know.
 struct TrackFile {
@@ -44,4 +44,4 @@ Result<Track> refuse_other_file(const TrackFile& file);
 // How a track of another format becomes one that is read. @param format as gpsbabel calls it
 std::string gpsbabel_command(std::string_view format);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

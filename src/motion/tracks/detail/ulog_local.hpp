@@ -6,7 +6,7 @@
 #include "flight_log.hpp"
 #include "receiver/observed/ulog.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // Reads the records of vehicle_local_position or its groundtruth. Resets of the filter are no motion: what came before
 // one is moved by what it changed, so that the end of the log stays where it was told.
@@ -45,4 +45,4 @@ private:
     double farthest_m_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -8,7 +8,7 @@
 
 #include "track_formats.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // The name of the root element without its prefix, told without reading the whole; empty when the text is no XML.
 std::string_view xml_root_name(std::string_view text);
@@ -39,4 +39,4 @@ private:
     std::size_t counted_to_ = 0, line_ = 1;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -9,7 +9,7 @@
 
 #include "motion/trajectory/local_shape.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // Keeps position, velocity and acceleration of both ends (FEEDS.md 1.13.3).
 class QuinticPiece {
@@ -73,4 +73,4 @@ private:
     std::vector<Knot> knots_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -5,7 +5,7 @@
 
 #include "motion/trajectory/live_path.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// @param from the last that is known @param after s since then, ≥ 0
 LivePath::Motion carried_on(const LivePath::Motion& from, const LivePath::Patience& patience, double after);
@@ -31,4 +31,4 @@ double part_left(double length, double t);
 /// @param times s
 Eigen::Vector3d slope_at_end(std::span<const double> times, std::span<const Eigen::Vector3d> values);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 struct SmoothStep {
     double value = 0, slope = 0, bend = 0;  // and its first and second derivative
@@ -17,4 +17,4 @@ inline SmoothStep smooth_step(double u) {
 constexpr double steepest_of_smooth_step = 1.875;   // its largest slope, in the middle
 constexpr double sharpest_of_smooth_step = 5.7736;  // its largest second derivative, 10 / √3
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

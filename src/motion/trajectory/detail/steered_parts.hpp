@@ -16,7 +16,7 @@
 #include "motion/trajectory/vehicle.hpp"
 #include "motion/trajectory/waypoint_plan.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // The turn that needs the lateral acceleration, or the smallest radius where that asks for less.
 inline TurnShape turn_at_speed(const VehicleLimits& vehicle, double angle, double speed) {
@@ -109,4 +109,4 @@ PassedPlaces pass_by_tight_turns(std::vector<PlannedWaypoint>& waypoints, const 
 std::shared_ptr<const LocalShape> steered_joint(const LocalMotion& from, const LocalMotion& to,
                                                 const VehicleLimits& vehicle);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -13,7 +13,7 @@
 
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // A point that the curve goes through; seconds after the first row, metres, ECEF.
 struct TrackKnot {
@@ -76,4 +76,4 @@ inline PiecePowers piece_powers(double u, int derivative) {
     return powers;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -9,7 +9,7 @@
 
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 using TrackRows = std::vector<TrackRow>;
 
@@ -36,4 +36,4 @@ Nanoseconds median_step(const TrackRows& rows);
 // order, single rows only where their places fit there. Times that count from the file's own start may begin anew.
 void put_rows_in_order(Track& track);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

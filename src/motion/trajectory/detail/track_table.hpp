@@ -13,7 +13,7 @@
 #include "base/core/result.hpp"
 #include "motion/trajectory/track.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 /// What a column may say.
 enum class TrackQuantity {
@@ -137,4 +137,4 @@ private:
     bool whole_seconds_ = true;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -7,7 +7,7 @@
 
 #include "motion/trajectory/waypoint_plan.hpp"
 
-namespace skyloop {
+namespace skyloop::inline motion {
 
 // Notes of which there may be many: a few are told, the others counted.
 class PlanNotes {
@@ -54,4 +54,4 @@ std::string leg_called(const std::vector<PlannedWaypoint>& waypoints, std::size_
 PathPlanResult plan_fly_through(const WaypointWish& wish);
 PathPlanResult plan_steered(const WaypointWish& wish);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline motion

@@ -15,7 +15,7 @@
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// What sets a signal's tracking apart from that of GPS L1 C/A.
 struct SignalTraits {
@@ -104,4 +104,4 @@ struct LoopDeviations {
 LoopDeviations loop_deviations(const MeasurementParameters& parameters, const CodeLoop& code_loop, double jitter_ratio,
                                DbHz cn0, const SignalScintillation& scintillation);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -11,7 +11,7 @@
 #include "world/flow/measurement_terms.hpp"
 #include "world/flow/observations.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// What all channels share at one instant.
 struct ChannelEpoch {
@@ -89,4 +89,4 @@ private:
     Metres added_path_, phase_multipath_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -10,7 +10,7 @@
 #include "receiver/measurement/measurement_parameters.hpp"
 #include "world/flow/receiver_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// What a channel has before it at one instant.
 struct SignalSight {
@@ -77,4 +77,4 @@ private:
     double cycles_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

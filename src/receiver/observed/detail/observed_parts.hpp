@@ -10,7 +10,7 @@
 #include "receiver/observed/nmea_epochs.hpp"
 #include "receiver/observed/observed_log.hpp"
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 /// A little-endian number at `at`, which lies inside. Every format here is little-endian, as the machines are.
 template <class Number>
@@ -62,4 +62,4 @@ Result<ObservedLog> read_dataflash(ByteSpan bytes, const std::string& name, cons
 /// Baselines are refused: they have no place on the Earth.
 Result<ObservedLog> read_rtklib_solution(ByteSpan bytes, const std::string& name, const ObservedReading& reading);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -12,7 +12,7 @@
 #include "receiver/protocol/nmea_messages.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 
-namespace skyloop::nmea_encoding {
+namespace skyloop::inline receiver::nmea_encoding {
 
 inline constexpr std::size_t longest_sentence = 82;  // NMEA 0183, 5.3: with "$" and line end
 
@@ -49,9 +49,9 @@ std::string within_limit(const NmeaFormat& format, int decimals, MakeText make_t
     return text;
 }
 
-}  // namespace skyloop::nmea_encoding
+}  // namespace skyloop::inline receiver::nmea_encoding
 
-namespace skyloop::nmea_decoding {
+namespace skyloop::inline receiver::nmea_decoding {
 
 /// Reads the fields of one sentence; remembers the first that is not what its place demands.
 class FieldReader {
@@ -115,4 +115,4 @@ Result<NmeaMessage> decode_vlw(FieldReader r);
 Result<NmeaMessage> decode_ths(FieldReader r);
 Result<NmeaMessage> decode_hdt(FieldReader r);
 
-}  // namespace skyloop::nmea_decoding
+}  // namespace skyloop::inline receiver::nmea_decoding

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <optional>
 
-namespace skyloop {
+namespace skyloop::inline receiver {
 
 struct NormalEquations {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
@@ -32,4 +32,4 @@ inline std::optional<Eigen::Matrix3d> inverse_across(const Eigen::Matrix3d& m, c
     return Eigen::Matrix3d(*inverse - along / filling);
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline receiver

@@ -3,10 +3,10 @@
 
 #include "run/emulator/data_folders.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The folder that a caller names first, then those of find_data_folders(), beside the loaded library first.
 /// @param named null: none
 DataFolders library_data_folders(const char* named);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

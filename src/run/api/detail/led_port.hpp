@@ -8,7 +8,7 @@
 
 #include "wire/transport/transport.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Keeps what the receiver has sent until the caller takes it, and brings the caller's bytes to the receiver at the
 /// speed of a line: 8N1; a port without a speed at 12 Mbit/s, the full speed of USB 2.0.
@@ -58,4 +58,4 @@ private:
     std::uint32_t receiver_baud_ = 0;  // 0: the port has no speed
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/status_board.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What a receiver has told its users.
 struct Report {
@@ -54,4 +54,4 @@ private:
     StatusBoard board_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -22,7 +22,7 @@
 #include "skyloop.h"
 #include "world/propagation/told_obstacles.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A status of skyloop.h, never SKY_OK, and a sentence for sky_last_error().
 struct Refusal {
@@ -118,4 +118,4 @@ private:
     std::atomic<bool> never_{false};
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

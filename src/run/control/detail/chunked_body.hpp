@@ -5,7 +5,7 @@
 #include <boost/beast/http/basic_parser.hpp>
 #include <cstddef>
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Bytes to read before a parser whose header is complete may go on. Beast older than Boost 1.86 asserts that it is not
 /// given three or four bytes of a body whose first chunk is its last (boostorg/beast, pull request 2861); no chunked
@@ -17,4 +17,4 @@ std::size_t bytes_before_body(const boost::beast::http::basic_parser<is_request>
     return parser.chunked() ? shortest_chunked_body - std::min(shortest_chunked_body, buffered) : 0;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

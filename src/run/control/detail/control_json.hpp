@@ -12,7 +12,7 @@
 #include "run/fault/command.hpp"
 #include "run/fault/parameters.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Members stay in the order in which they are set.
 using Json = nlohmann::ordered_json;
@@ -31,4 +31,4 @@ Json to_json(const ParameterSpec& spec);
 /// The JSON Schema of a parameter.
 Json schema_of(const ParameterSpec& spec);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

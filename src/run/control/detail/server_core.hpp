@@ -14,7 +14,7 @@
 #include "run/control/control_request.hpp"
 #include "run/control/control_server.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 using TcpSocket = boost::asio::ip::tcp::socket;
 using HttpRequest = boost::beast::http::request<boost::beast::http::string_body>;
@@ -65,4 +65,4 @@ void refuse_client(ServerCore& core, TcpSocket socket, ClientSlot slot);
 /// Goes on with a socket whose request has been allowed as a WebSocket. @param rate snapshots a second
 void serve_stream(ServerCore& core, TcpSocket socket, ClientSlot slot, std::pair<HttpRequest, double> request_and_rate);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

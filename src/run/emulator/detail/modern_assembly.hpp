@@ -13,7 +13,7 @@
 #include "run/scenario/scenario.hpp"
 #include "world/propagation/named_ionosphere_maps.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The IONEX file that a run's delays come from; empty: none.
 std::filesystem::path acting_ionosphere_maps(const Scenario& scenario);
@@ -46,4 +46,4 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
 MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup,
                                      const std::optional<Geodetic>& last_place);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

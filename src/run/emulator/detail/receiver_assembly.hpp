@@ -8,7 +8,7 @@
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/wires.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// What all receivers of a run share.
 struct SharedParts {
@@ -44,4 +44,4 @@ std::uint64_t receiver_seed(std::uint64_t seed, std::size_t index);
 /// An error of one receiver of several names it.
 Error of_receiver(Error error, const Scenario& scenario, std::size_t index);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "run/emulator/wires.hpp"
 #include "run/scenario/scenario.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Where the recording of a receiver lies: the first one's in the folder itself, the others' in receiver1 and so on.
 std::filesystem::path recording_of(const std::filesystem::path& folder, std::size_t receiver);
@@ -55,4 +55,4 @@ struct InputFile {
 std::vector<InputFile> input_files(const Scenario& scenario, const DataFolders& data,
                                    const std::optional<std::filesystem::path>& repeat = std::nullopt);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -13,7 +13,7 @@
 #include "world/gnss/ephemeris.hpp"
 #include "world/rinex/rinex_writer.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 inline constexpr std::string_view fixes_header =
     "time_utc,gps_week,tow_s,true_lat_deg,true_lon_deg,true_height_m,lat_deg,lon_deg,height_m,"
@@ -70,4 +70,4 @@ private:
     std::map<SatelliteId, Written> written_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -14,7 +14,7 @@
 #include "run/scenario/scenario.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A sentence for the keys that the scenario's model does not take, and one for each rain or cloud that lies below an
 /// antenna that stays where it is. @param geoid null: the ellipsoid stands in for the sea
@@ -42,4 +42,4 @@ struct PathUnderLimits {
 /// not known.
 std::optional<std::string> limit_warning(const PathUnderLimits& path);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Where an antenna is, or is made to believe that it is, and how it moves.
 struct AntennaMotion {
@@ -55,4 +55,4 @@ private:
     std::map<SatelliteId, Last> last_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -14,7 +14,7 @@
 #include "base/geo/geodetic.hpp"
 #include "run/fault/fault_kind.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// The kinds of these tables, one table after the other, all of one layer.
 inline std::vector<FaultKind> all_kinds_of(FaultLayer layer, std::initializer_list<std::span<const FaultKind>> tables) {
@@ -129,4 +129,4 @@ private:
     bool has_height_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

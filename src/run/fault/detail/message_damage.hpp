@@ -16,7 +16,7 @@
 #include "receiver/protocol/stream_splitter.hpp"
 #include "run/fault/wire_damage.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Bytes that go on together.
 struct TimedBytes {
@@ -101,4 +101,4 @@ private:
     WireDamageCounts counts_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -10,7 +10,7 @@
 #include "run/fault/fault_kind.hpp"
 #include "world/gnss/signal.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Satellites and signals; where nothing is told, all of them.
 struct SignalSelector {
@@ -78,4 +78,4 @@ private:
     bool chosen_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -18,7 +18,7 @@
 
 #include "run/feed/feed_dialect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 std::unique_ptr<FeedDialect> make_ardupilot_json_dialect(const FeedContext& context);
 std::unique_ptr<FeedDialect> make_betaflight_dialect(const FeedContext& context);
@@ -152,4 +152,4 @@ private:
     bool done_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

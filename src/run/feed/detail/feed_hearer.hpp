@@ -18,7 +18,7 @@
 
 #include "run/feed/feed_dialect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Lock-step: the run may go on to `until`, of the source's clock.
 struct FeedStep {
@@ -124,4 +124,4 @@ private:
     std::vector<FeedItem> items_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

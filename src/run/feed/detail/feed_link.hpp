@@ -20,7 +20,7 @@
 #include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/tcp.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// A socket address of either family.
 struct FeedPeer {
@@ -170,4 +170,4 @@ private:
     ConnectBackoff backoff_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

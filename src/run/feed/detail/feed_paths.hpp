@@ -12,7 +12,7 @@
 #include "feed_hearer.hpp"
 #include "run/feed/truth_feed.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Puts what a feed's thread has heard into paths, in its order. All of it belongs to the loop's thread.
 class FeedPaths {
@@ -106,4 +106,4 @@ private:
     bool rate_told_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

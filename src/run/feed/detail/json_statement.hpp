@@ -9,7 +9,7 @@
 
 #include "run/feed/feed_dialect.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 using FeedJson = nlohmann::json;
 
@@ -35,4 +35,4 @@ Result<TruthSample> statement_sample(const FeedJson& statement, const std::optio
 // The command that an event asks for: its name is a command or a kind of fault, its args are their parameters.
 Result<Command> statement_event(const FeedJson& statement);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

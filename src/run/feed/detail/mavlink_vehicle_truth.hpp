@@ -11,7 +11,7 @@
 #include "motion_filter.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 // Runs at its own rate, which need not be ours: simulators hurry and dawdle. State: the last message, and the line
 // through them.
@@ -79,4 +79,4 @@ private:
     bool is_coarse_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

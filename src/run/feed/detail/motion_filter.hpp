@@ -8,7 +8,7 @@
 
 #include "motion/trajectory/trajectory.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 // Position, velocity and acceleration along one axis by a Kalman filter whose jerk is white noise (FEEDS.md 1.13.2,
 // step 3, without its smoother: the future is not there yet).
@@ -60,4 +60,4 @@ private:
     int seen_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

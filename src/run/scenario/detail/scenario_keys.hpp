@@ -14,7 +14,7 @@
 #include "run/verdict/expectation.hpp"
 #include "table_reader.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Everything in a scenario. @param folder that paths are relative to
 void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
@@ -106,4 +106,4 @@ void read_signal_conflicts(TableReader& navigation, firmware::BoardProfile& boar
 /// The bytes that pairs of hexadecimal digits write, blanks among them left aside; nothing for any other text.
 std::optional<Bytes> bytes_of_hex(std::string_view text);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -26,7 +26,7 @@
 #include "run/fault/parameters.hpp"
 #include "run/scenario/key_catalogue.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// One reading shows the keys of one branch. So each table is read once for each word of its `kind`, and the whole with
 /// every key said to be there and with none.
@@ -319,4 +319,4 @@ private:
 Result<void> read_toml(std::string_view text, const std::string& file, const std::function<void(TableReader&)>& body,
                        const std::function<void(toml::table&, MistakeList&)>& change = {});
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

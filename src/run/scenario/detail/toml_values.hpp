@@ -11,7 +11,7 @@
 
 #include "run/scenario/campaign_settings.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// How many parts a key or header has at most; with one in whose inline table it stands, they count together.
 inline constexpr std::size_t most_key_parts = 256;
@@ -29,4 +29,4 @@ std::optional<CampaignValue> campaign_value(const toml::node& node);
 /// Calls `use` with the node that the text of a value stands for. The text is one of toml_text().
 void with_toml_value(const CampaignValue& value, const std::function<void(const toml::node&)>& use);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "motion/trajectory/shaped_path.hpp"
 #include "scenario_keys.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 // Reads places that may be given on the Earth or in the coordinates of a game level.
 class PlaceReader {
@@ -93,4 +93,4 @@ void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& traj
 void read_file_track(TableReader& table, PlaceReader& places, const std::filesystem::path& folder,
                      TrajectorySettings& trajectory);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -12,7 +12,7 @@
 #include "run/verdict/verdict.hpp"
 #include "subject_view.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// How a sentence came out.
 struct Finding {
@@ -117,4 +117,4 @@ private:
     std::optional<Finding> finding_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

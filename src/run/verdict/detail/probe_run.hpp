@@ -12,7 +12,7 @@
 #include "expectation_tracker.hpp"
 #include "run/verdict/expectation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// "command 'gpspipe -w -n 5' exits 0".
 std::string probe_text(const Probe& probe);
@@ -49,4 +49,4 @@ private:
     std::thread thread_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

@@ -9,7 +9,7 @@
 
 #include "run/verdict/expectation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// Takes words from the front of a sentence and remembers what would have been welcome, for the mistake.
 ///
@@ -67,4 +67,4 @@ bool means_a_stretch(const TimeClause& time);
 /// A subject that is a message, which takes no time.
 bool is_message(ExpectedSubject subject);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

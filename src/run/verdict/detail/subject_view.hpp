@@ -9,7 +9,7 @@
 #include "run/fault/run_observer.hpp"
 #include "run/verdict/expectation.hpp"
 
-namespace skyloop {
+namespace skyloop::inline run {
 
 /// One look at a subject.
 struct Reading {
@@ -73,4 +73,4 @@ private:
     bool shown_ = false;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline run

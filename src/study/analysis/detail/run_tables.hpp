@@ -16,7 +16,7 @@
 #include "base/core/written_place.hpp"
 #include "study/analysis/fix_series.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// The cells of a line, each without blanks around it. A separator between double quotes separates nothing. With a
 /// space as `separator` several count as one.
@@ -73,4 +73,4 @@ Result<std::vector<DatedSignal>> parse_satellites_table(std::string_view text, c
 /// the samples of these times. What cannot be read there becomes a warning of `series`: its fixes are good without it.
 void add_satellites_beside(const std::filesystem::path& fixes, FixSeries& series);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

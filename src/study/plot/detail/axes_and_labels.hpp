@@ -9,7 +9,7 @@
 
 #include "study/plot/svg_document.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 struct AxisScale {
     double from = 0, to = 1, step = 1;  ///< unit of the numbers; to > from
@@ -75,4 +75,4 @@ private:
     double reach_ = 0;  ///< 0: no limit
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

@@ -7,7 +7,7 @@
 #include "study/plot/svg_document.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 /// A rectangle of the scene's ground and the rectangle of the picture that shows it; north is up.
 class PlanView {
@@ -44,4 +44,4 @@ double draw_city(SvgDocument& svg, const UrbanScene& scene, const PlanView& view
 /// A bar of a round length in the lower left corner of the view, and an arrow to the north in the upper right one.
 void draw_scale_and_north(SvgDocument& svg, const PlanView& view);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

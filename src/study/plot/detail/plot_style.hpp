@@ -14,7 +14,7 @@
 #include "study/plot/svg_document.hpp"
 #include "world/gnss/satellite.hpp"
 
-namespace skyloop::plot_style {
+namespace skyloop::inline study::plot_style {
 
 inline constexpr std::string_view ink = "#1f2933";
 inline constexpr std::string_view faint_ink = "#5f6b7a";
@@ -107,4 +107,4 @@ inline std::string ramp_colour(std::span<const Rgb> ramp, double share) {
     return text.data();
 }
 
-}  // namespace skyloop::plot_style
+}  // namespace skyloop::inline study::plot_style

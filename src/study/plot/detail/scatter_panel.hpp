@@ -9,7 +9,7 @@
 #include "study/plot/scatter_plot.hpp"
 #include "study/plot/svg_document.hpp"
 
-namespace skyloop {
+namespace skyloop::inline study {
 
 // Measures of the picture, pixels.
 inline constexpr double panel_width = 400;
@@ -39,4 +39,4 @@ std::string error_axis_name(ErrorQuantity quantity);
 /// as the clouds are shown.
 void draw_error_histograms(SvgDocument& svg, const ScatterPanel& a, const ScatterPanel& b, double reach);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline study

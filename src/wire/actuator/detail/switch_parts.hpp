@@ -5,7 +5,7 @@
 
 #include "wire/actuator/actuator_uri.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 // Each finds its hardware and opens it, and fails with `outside` as open_actuator() does.
 Result<std::unique_ptr<Actuator>> open_switch(const RelayAddress& address);
@@ -23,4 +23,4 @@ inline PowerState state_at(bool active_now, ActiveLevel active) {
     return active_now == (active == ActiveLevel::cuts) ? PowerState::cut : PowerState::on;
 }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -13,7 +13,7 @@
 #include "base/core/bytes.hpp"
 #include "wire/transport/serial.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 inline constexpr std::uint32_t lowest_baud = 50, highest_baud = 12'000'000;  // bit/s
 
@@ -33,4 +33,4 @@ void put_format(termios2& settings, const SerialFormat& format);
 /// What put_format() puts is there.
 bool has_format(const termios2& settings, const SerialFormat& format);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -8,7 +8,7 @@
 #include "line_settings.hpp"
 #include "wire/transport/file_descriptor.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 class SerialLine {
 public:
@@ -69,4 +69,4 @@ private:
     std::optional<std::int64_t> empty_since_ns_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

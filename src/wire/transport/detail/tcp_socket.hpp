@@ -14,7 +14,7 @@
 #include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/tcp.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// Most bytes that are taken in at one look: an other end that writes without end must not hold the loop.
 constexpr std::size_t most_read_at_once = 65536;
@@ -72,4 +72,4 @@ private:
     bool loopback_ = true;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

@@ -11,7 +11,7 @@
 #include "wire/usb/cdc_acm.hpp"
 #include "wire/usb/serial_bridge.hpp"
 
-namespace skyloop {
+namespace skyloop::inline wire {
 
 /// All calls of libusb come from its thread, once it runs; the loop's side reaches the buffers alone.
 ///
@@ -89,4 +89,4 @@ private:
     std::thread thread_{};
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline wire

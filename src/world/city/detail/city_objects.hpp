@@ -9,7 +9,7 @@
 #include "place_on_earth.hpp"
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What an object is, as far as signals care.
 enum class ObjectClass {
@@ -70,4 +70,4 @@ Result<CityFile> city_of_objects(CityObjects read, std::string_view format, std:
 /// The refusal of a file with too many triangles.
 tl::unexpected<Error> too_many_triangles(std::string_view name, const CityFileSettings& settings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Reads a number at `at` and moves behind it; digits may follow a plus sign, "nan" and "inf" are numbers. One too
 /// large for a double is infinite, one too small is zero. @returns nothing, `at` unmoved, where there is no number
@@ -29,4 +29,4 @@ std::string material_of_name(std::string_view name);
 /// modelling programs make, with or without a number.
 bool names_ground(std::string_view name);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

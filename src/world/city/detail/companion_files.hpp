@@ -10,7 +10,7 @@
 
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Bytes, after decompression, of which a city may hold so many in one file: 4 GiB, 50 million triangles as text, or as
 /// many as its scene may take.
@@ -38,4 +38,4 @@ Result<CityFile> parse_mitsuba(std::string_view xml, std::string_view name, cons
 Result<CityFile> parse_gltf_with(std::string_view bytes, std::string_view name, const CityFileSettings& settings,
                                  const CompanionFiles& companions);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -8,7 +8,7 @@
 
 #include "world/city/footprint.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Ear clipping (Meisters 1975) on one ring to which the holes are bridged (Eberly, "Triangulation by Ear Clipping"),
 /// with points found by their place on a Z curve; where no ear is left, crossings of neighbouring edges are cut away
@@ -92,4 +92,4 @@ private:
     int outer_ = none;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

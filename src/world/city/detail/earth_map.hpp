@@ -11,7 +11,7 @@
 struct PJconsts;
 struct pj_ctx;
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// A reference system of maps or of latitudes and longitudes, alone or with heights. Each has a PROJ context of its
 /// own, which never asks the network. Not for several threads at once.
@@ -66,4 +66,4 @@ private:
 /// Changes when PROJ's version or the files in its folders do: what a file was understood as may then be another.
 std::uint64_t proj_data_digest();
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

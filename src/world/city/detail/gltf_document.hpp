@@ -10,7 +10,7 @@
 
 #include "companion_files.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Numbers of an accessor where they lie: checked to be inside their buffer.
 struct GltfNumbers {
@@ -60,4 +60,4 @@ std::string gltf_text(const nlohmann::json& object, const char* key);
 /// All numbers of an array, `otherwise` when there is none of that name; empty when it holds something else.
 std::vector<double> gltf_numbers(const nlohmann::json& object, const char* key, std::vector<double> otherwise);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 #include "place_on_earth.hpp"
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// The middles of its cells lie at equal steps in the coordinates of its system.
 struct HeightGrid {
@@ -29,4 +29,4 @@ Result<void> check_grid_size(const HeightGrid& grid, std::string_view name, cons
 /// The grid as ground.
 Result<CityFile> city_of_grid(HeightGrid grid, std::string_view name, const CityFileSettings& settings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

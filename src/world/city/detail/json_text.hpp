@@ -6,7 +6,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What a name is of.
 enum class JsonText { file, line };
@@ -21,4 +21,4 @@ const nlohmann::json& member(const nlohmann::json& value, const char* key);
 /// A text member, empty when there is none.
 std::string_view text_member(const nlohmann::json& value, const char* key);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

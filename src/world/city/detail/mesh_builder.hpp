@@ -10,7 +10,7 @@
 
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What a facet belongs to.
 struct MeshPart {
@@ -77,4 +77,4 @@ private:
     std::vector<std::string> warnings_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -9,7 +9,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 struct OsmDeletions {
     std::set<std::int64_t> nodes, ways, relations;
@@ -27,4 +27,4 @@ std::optional<std::string_view> wild_coordinate(std::string_view xml);
 /// file that was cut in the middle is told as that. libosmium 2.18 compares the type of a header that has none.
 Result<void> check_pbf_blobs(std::string_view bytes, std::string_view name);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

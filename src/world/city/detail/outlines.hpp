@@ -11,7 +11,7 @@
 #include "world/city/city_file.hpp"
 #include "world/city/footprint.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 using OutlineTags = std::map<std::string, std::string, std::less<>>;
 
@@ -65,4 +65,4 @@ bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d
 Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::string_view name,
                                   const CityFileSettings& settings);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -14,7 +14,7 @@
 #include "earth_map.hpp"
 #include "world/city/city_file.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 struct CityFileSettings;
 
@@ -144,4 +144,4 @@ private:
     std::optional<LocalFrame> frame_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -10,7 +10,7 @@
 
 #include "mesh_builder.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 enum class PlyEncoding { ascii, little_endian, big_endian };
 
@@ -46,4 +46,4 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name
 /// Adds a file's facets to a mesh that has begun. Fails with `input` and NAME:LINE or the byte.
 Result<void> add_ply(MeshBuilder& builder, std::string_view bytes, std::string_view name, MeshPart part);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

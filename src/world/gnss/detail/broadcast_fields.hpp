@@ -8,7 +8,7 @@
 #include "base/core/bytes.hpp"
 #include "base/time/utc_time.hpp"
 
-namespace skyloop::broadcast {
+namespace skyloop::inline world::broadcast {
 
 /// 2^exponent, the step of a field.
 inline double power_of_two(int exponent) { return std::ldexp(1.0, exponent); }
@@ -59,4 +59,4 @@ struct LeapChange {
 };
 LeapChange leap_change(const LeapSeconds& leap_seconds, GpsTime time);
 
-}  // namespace skyloop::broadcast
+}  // namespace skyloop::inline world::broadcast

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What multiplies P_nm(sin φ) cos mλ and P_nm(sin φ) sin mλ, Legendre functions without normalisation.
 struct HarmonicPair {
@@ -22,4 +22,4 @@ struct GmfGptTerm {
 
 extern const std::array<GmfGptTerm, 55> gmf_gpt_terms;
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -5,7 +5,7 @@
 
 #include "world/gnss/nequick_g.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What is the same along a whole ray: activity, month, time, and the CCIR maps taken there.
 class NequickConditions {
@@ -59,4 +59,4 @@ private:
     double scale_above_ = 0;                                         // H0, km
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

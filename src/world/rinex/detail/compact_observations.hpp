@@ -6,7 +6,7 @@
 
 #include "base/core/result.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 /// Whether a text begins as a compact RINEX file does.
 bool is_compact(std::string_view text);
@@ -18,4 +18,4 @@ bool is_compact(std::string_view text);
 /// max_text_file_size bytes: what follows a damage cannot be restored.
 Result<std::string> from_compact(std::string_view text, std::string_view name);
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

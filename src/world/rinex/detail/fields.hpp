@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 /// Years of epochs: those of GPS time which 64-bit nanoseconds hold whole, so that all that a run writes is read back.
 constexpr bool is_epoch_year(int year) { return year >= 1980 && year <= 2269; }
@@ -70,4 +70,4 @@ struct DefectTally {
     }
 };
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

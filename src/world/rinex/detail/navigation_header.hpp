@@ -10,7 +10,7 @@
 #include "fields.hpp"
 #include "world/rinex/navigation_file.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 /// What the header says that a reader of orbits needs.
 struct NavigationHeader {
@@ -26,4 +26,4 @@ struct NavigationHeader {
 /// Reads up to END OF HEADER. Fails with `input` for other kinds of file, other versions, or without an end.
 Result<NavigationHeader> read_header(LineReader& lines, std::string_view name);
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

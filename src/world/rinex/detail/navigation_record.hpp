@@ -16,7 +16,7 @@
 #include "fields.hpp"
 #include "world/gnss/ephemeris.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 /// Why a record cannot be used.
 struct Defect {
@@ -97,4 +97,4 @@ tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kin
 /// Reads four lines (RINEX 3.05, table A16).
 tl::expected<SbasEphemeris, Defect> read_sbas_record(const RecordKind& kind, RecordFields fields);
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

@@ -11,7 +11,7 @@
 #include "fields.hpp"
 #include "observation_header.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 /// The first line of an epoch.
 struct EpochHead {
@@ -72,4 +72,4 @@ private:
     std::map<std::pair<SatelliteId, Signal>, PhaseHistory> phases_;
 };
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

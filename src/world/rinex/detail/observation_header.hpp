@@ -14,7 +14,7 @@
 #include "world/gnss/signal.hpp"
 #include "world/rinex/observation_reader.hpp"
 
-namespace skyloop::rinex {
+namespace skyloop::inline world::rinex {
 
 /// The fields of one observation code; absent ones are -1.
 struct CodeColumns {
@@ -86,4 +86,4 @@ private:
     ObservationFile facts_;
 };
 
-}  // namespace skyloop::rinex
+}  // namespace skyloop::inline world::rinex

@@ -8,7 +8,7 @@
 
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Boxes around boxes around volumes, immutable. A ray looks at the volumes whose boxes it passes alone.
 class FoliageTree {
@@ -43,4 +43,4 @@ private:
     std::vector<Node> nodes_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -8,7 +8,7 @@
 
 #include "world/scene/city_model.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// An upright box on the ground.
 struct House {
@@ -41,4 +41,4 @@ std::size_t windowed_house_triangles(const House& house, const WindowSettings& w
 /// One square of ground.
 void add_ground(CityModel& city, double half_width, std::uint8_t material = 0);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

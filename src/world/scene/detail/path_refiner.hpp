@@ -18,7 +18,7 @@
 #include "world/scene/scene_path.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Planes from the antenna to the satellite.
 using PlaneSequence = InplaceVector<std::uint32_t, most_reflections>;
@@ -191,4 +191,4 @@ private:
     std::uint64_t candidates_ = 0, segments_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -11,7 +11,7 @@
 #include "ray_lattice.hpp"
 #include "search_crew.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Straight lines from the antenna to all satellites, asked of the scene at once.
 class SightLines {
@@ -95,4 +95,4 @@ private:
     Effort effort_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -7,7 +7,7 @@
 
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// Planes, numbered as triangles come upon them, and the plane of each triangle.
 struct MergedPlanes {
@@ -26,4 +26,4 @@ struct MergedPlanes {
 MergedPlanes merge_planes(std::span<const Eigen::Vector3d> vertices, std::span<const CityTriangle> triangles,
                           double tolerance);
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// An interval of the sine of elevation; below the horizon it is negative.
 struct ElevationBand {
@@ -44,4 +44,4 @@ private:
     double spacing_ = 0;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// One task at a time runs on one of a few threads while the caller does other things; the task may share parts of its
 /// work among all of them. Without threads everything happens in the calling thread. Which thread does what is left to
@@ -49,4 +49,4 @@ private:
     std::vector<std::jthread> threads_;  ///< last: they end before what they use
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world

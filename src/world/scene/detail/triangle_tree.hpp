@@ -10,7 +10,7 @@
 #include "base/core/result.hpp"
 #include "world/scene/urban_scene.hpp"
 
-namespace skyloop {
+namespace skyloop::inline world {
 
 /// What a ray meets first, and how far off in single precision.
 struct TreeHit {
@@ -50,4 +50,4 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace skyloop
+}  // namespace skyloop::inline world
