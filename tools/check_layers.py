@@ -51,6 +51,7 @@ PUBLIC = {"Eigen", "tl::expected", "the C library"}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 
 
+NAMESPACE = re.compile(r"^namespace (skyloop\b[^{\n]*?) *\{", re.MULTILINE)
 DISTRICT = re.compile(r"\[([\w-]+) :((?: [\w-]+)*)\](?:\s*#.*)?")
 ROOM = re.compile(r"(\w+)\s*:([\w\s]*)((?:![\w/]+\s*)*)")
 
@@ -125,6 +126,7 @@ class Checker:
             self.complain(relative, 1, "belongs to no row of tools/layers.txt")
             return
         text = source_tree.without_comments((self.root / relative).read_text(errors="replace"))
+        self.check_namespaces(relative, text)
         for match in INCLUDE.finditer(text):
             line = text.count("\n", 0, match.start()) + 1
             name = match[1] or match[2]
@@ -136,6 +138,15 @@ class Checker:
                 self.complain(relative, line, f'"{name}" is no header of the project')
             else:
                 self.check_foreign(relative, layer, line, name)
+
+    def check_namespaces(self, relative, text):
+        """Names say where they live: skyloop::inline DISTRICT in src, skyloop::ROOM in firmware-host."""
+        district, layer = place_of(relative)
+        expected = f"skyloop::{layer}" if district == "firmware-host" else f"skyloop::inline {district}"
+        for match in NAMESPACE.finditer(text):
+            if match[1] != expected and not match[1].startswith(expected + "::"):
+                line = text.count("\n", 0, match.start()) + 1
+                self.complain(relative, line, f"namespace {match[1]}: expected {expected}")
 
     def own_header(self, relative, name):
         """The file of the project that an include names, or None."""

@@ -53,6 +53,18 @@ class CheckLayers(unittest.TestCase):
     def test_a_good_tree_is_taken(self):
         self.assertEqual(self.errors(), [])
 
+    def test_a_namespace_is_that_of_the_district_or_of_the_room_of_the_firmware(self):
+        good = {"src/world/flow/x.cpp": "namespace skyloop::inline world {\nnamespace {\n}\n}\n",
+                "src/world/flow/y.cpp": "namespace skyloop::inline world::rinex {\n}\n",
+                "firmware-host/host/x.cpp": "namespace skyloop::host {\n}\n"}
+        self.assertEqual(self.errors(files=good), [])
+        for place, wrong, right in (("src/world/flow", "skyloop", "skyloop::inline world"),
+                                    ("src/world/flow", "skyloop::inline worlds", "skyloop::inline world"),
+                                    ("src/motion/tracks", "skyloop::inline world", "skyloop::inline motion"),
+                                    ("firmware-host/firmware", "skyloop::host", "skyloop::firmware")):
+            with self.subTest(wrong=wrong):
+                self.expect(f"x.cpp:2: namespace {wrong}: expected {right}", {f"{place}/x.cpp": f"\nnamespace {wrong} {{\n}}\n"})
+
     def test_a_layer_that_the_row_does_not_name(self):
         self.expect("src/world/flow/x.cpp:2: flow may not include tracks",
                     {"src/world/flow/x.cpp": '\n#include "motion/tracks/w.hpp"\n', "src/motion/tracks/w.hpp": ""})
