@@ -169,8 +169,8 @@ void PlanReader::take_head(const PlanJson& mission) {
                         *type));
     const bool hovers = mission_.vehicle == VehicleClass::multirotor && !vtol;
     const auto speed = plan_number(plan_member(mission, hovers ? "hoverSpeed" : "cruiseSpeed"));
-    constexpr double slowest_mps = 0.01, fastest_mps = 12000;
-    if (mission_.vehicle && speed && *speed >= slowest_mps && *speed <= fastest_mps) mission_.speed_mps = *speed;
+    constexpr double least_mps = 0.01, most_mps = 12000;
+    if (mission_.vehicle && speed && *speed >= least_mps && *speed <= most_mps) mission_.speed_mps = *speed;
 }
 
 Result<void> PlanReader::take_simple(const PlanJson& item) {
