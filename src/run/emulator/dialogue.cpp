@@ -62,7 +62,7 @@ std::string message_name(StreamKind kind, ByteSpan message) {
         case StreamKind::sbf:
             return "SBF";
         case StreamKind::command:
-            return command_line_name(to_string(message)).value_or("command");
+            return command_line_name(base::to_string(message)).value_or("command");
         case StreamKind::noise:
             return "noise";
     }

@@ -43,7 +43,7 @@ Bytes relay_report(RelayBoard::Kind kind, int number, bool drawn) {
 std::optional<RelayStates> relay_states(ByteSpan report) {
     if (report.size() != relay_report_size && report.size() != relay_report_size + 1) return std::nullopt;
     const ByteSpan data = report.last(relay_report_size);
-    const std::string serial = to_string(data.first(relay_serial_size));
+    const std::string serial = base::to_string(data.first(relay_serial_size));
     return RelayStates{serial.substr(0, serial.find('\0')), data.back()};
 }
 
