@@ -1,5 +1,5 @@
-# skyloop_library(NAME SOURCES … [PACKAGES …] [PUBLIC_PACKAGES …]) makes skyloop::NAME. Its own dependencies come from
-# tools/layers.txt; the layer test checks the includes against the same table.
+# skyloop_library(NAME [SOURCES …] [GENERATED …] [PACKAGES …] [PUBLIC_PACKAGES …]) makes skyloop::NAME of all sources of its folder, or
+# of the SOURCES named. Its own dependencies come from tools/layers.txt; the layer test checks the includes against the same table.
 
 set(SKYLOOP_LAYERS_FILE ${PROJECT_SOURCE_DIR}/tools/layers.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${SKYLOOP_LAYERS_FILE})
@@ -103,11 +103,14 @@ function(skyloop_test_code target)
 endfunction()
 
 function(skyloop_library name)
-    cmake_parse_arguments(arg "" "" "SOURCES;PACKAGES;PUBLIC_PACKAGES" ${ARGN})
+    cmake_parse_arguments(arg "" "" "SOURCES;GENERATED;PACKAGES;PUBLIC_PACKAGES" ${ARGN})
     skyloop_layer_row(${name} layers)
     list(TRANSFORM layers PREPEND skyloop::)
+    if(NOT arg_SOURCES)
+        file(GLOB_RECURSE arg_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+    endif()
     if(arg_SOURCES)
-        add_library(skyloop_${name} STATIC ${arg_SOURCES})
+        add_library(skyloop_${name} STATIC ${arg_SOURCES} ${arg_GENERATED})
         set(visibility PUBLIC)
         set_target_properties(skyloop_${name} PROPERTIES UNITY_BUILD ${SKYLOOP_UNITY} UNITY_BUILD_BATCH_SIZE ${SKYLOOP_UNIT_FILES})
         target_link_libraries(skyloop_${name} PRIVATE skyloop_instruments ${arg_PACKAGES})
