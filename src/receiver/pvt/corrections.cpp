@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "world/gnss/constants.hpp"
+#include "world/gnss/signal.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
