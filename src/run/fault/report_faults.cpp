@@ -15,21 +15,11 @@ namespace {
 using firmware::NavigationState;
 
 // All but the first and the last have a position.
-constexpr std::array all_fix_types{FixType::none,  FixType::dead_reckoning, FixType::fix_2d,    FixType::fix_3d,
-                                   FixType::dgnss, FixType::rtk_float,      FixType::rtk_fixed, FixType::time_only};
-
-constexpr auto fix_type_words = [] {
-    std::array<std::string_view, all_fix_types.size()> words;
-    for (std::size_t i = 0; i < words.size(); ++i)
-        words[i] = fix_type_name(all_fix_types[i]);
-    return words;
-}();
-constexpr std::span<const std::string_view> words_with_position(fix_type_words.data() + 1, fix_type_words.size() - 2);
+constexpr std::span<const std::string_view> words_with_position(fix_type_names.data() + 1, fix_type_names.size() - 2);
 
 FixType fix_type_of(std::string_view word) {
-    const auto* const found = std::find_if(all_fix_types.begin(), all_fix_types.end(),
-                                           [&](FixType type) { return fix_type_name(type) == word; });
-    return found == all_fix_types.end() ? FixType::none : *found;
+    const auto* const found = std::find(fix_type_names.begin(), fix_type_names.end(), word);
+    return found == fix_type_names.end() ? FixType::none : static_cast<FixType>(found - fix_type_names.begin());
 }
 
 // With the type goes what follows from it: satellites in use, which nobody has without a fix or reckons on with, and
@@ -246,7 +236,7 @@ constexpr auto untrue_report_kinds = without_strength(std::to_array<FaultKind>(
       "The type of fix is told wrong, and with it what follows from it: satellites in use, the vector of a pair. "
       "Position, velocity and accuracies stay.",
       "Firmware that reckons on without satellites and says 3D, or drivers' mistakes with it.",
-      {word_parameter("type", "2d", fix_type_words, "type of fix that is told")},
+      {word_parameter("type", "2d", fix_type_names, "type of fix that is told")},
       make_wrong_fix_type}}));
 
 constexpr auto rtk_kinds = std::to_array<FaultKind>(

@@ -106,16 +106,11 @@ bool row_has_place(const TableRow& row, const FixColumns& columns, TableCounts& 
 // By the fix_type, where there is one.
 Result<bool> row_has_fix(const TableRow& row, const FixColumns& columns, TableCounts& counts) {
     if (!columns.fix_type) return row_has_place(row, columns, counts);
-    constexpr std::array types{FixType::none,  FixType::dead_reckoning, FixType::fix_2d,    FixType::fix_3d,
-                               FixType::dgnss, FixType::rtk_float,      FixType::rtk_fixed, FixType::time_only};
     const std::string_view cell = row.cells[columns.fix_type->index];
-    std::vector<std::string_view> names;
-    for (const FixType type : types) {
-        if (cell == fix_type_name(type)) return type != FixType::none && type != FixType::time_only;
-        names.push_back(fix_type_name(type));
-    }
-    return fail(row.error(fmt::format("fix_type is '{}'; expected one of {}{}", quotable(cell), fmt::join(names, ", "),
-                                      did_you_mean(cell, names))));
+    if (std::find(fix_type_names.begin(), fix_type_names.end(), cell) != fix_type_names.end())
+        return cell != fix_type_name(FixType::none) && cell != fix_type_name(FixType::time_only);
+    return fail(row.error(fmt::format("fix_type is '{}'; expected one of {}{}", quotable(cell),
+                                      fmt::join(fix_type_names, ", "), did_you_mean(cell, fix_type_names))));
 }
 
 // ISO 8601 dates a row; a bare number of seconds only tells rows apart.

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -61,28 +62,10 @@ Eigen::Matrix<double, Size, Size> covariance_of(const Eigen::Matrix<double, Size
 /// Kinds of solution, as fixes.csv names them.
 enum class FixType { none, dead_reckoning, fix_2d, fix_3d, dgnss, rtk_float, rtk_fixed, time_only };
 
-/// "none", "2d", "3d", … as in fixes.csv.
-constexpr std::string_view fix_type_name(FixType type) {
-    switch (type) {
-        case FixType::none:
-            return "none";
-        case FixType::dead_reckoning:
-            return "dead_reckoning";
-        case FixType::fix_2d:
-            return "2d";
-        case FixType::fix_3d:
-            return "3d";
-        case FixType::dgnss:
-            return "dgnss";
-        case FixType::rtk_float:
-            return "rtk_float";
-        case FixType::rtk_fixed:
-            return "rtk_fixed";
-        case FixType::time_only:
-            return "time_only";
-    }
-    return "none";
-}
+/// As in fixes.csv, in the order of FixType.
+inline constexpr std::array<std::string_view, 8> fix_type_names{"none",  "dead_reckoning", "2d",        "3d",
+                                                                "dgnss", "rtk_float",      "rtk_fixed", "time_only"};
+constexpr std::string_view fix_type_name(FixType type) { return fix_type_names[static_cast<std::size_t>(type)]; }
 
 /// Velocity over ground, metres per second.
 struct VelocityNed {

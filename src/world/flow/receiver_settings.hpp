@@ -2,6 +2,7 @@
 /// Dynamic platform models and how far a vehicle may go in them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -29,26 +30,14 @@ struct MotionLimits {
 /// models the ceiling alone: their speeds are not looked at.
 /// @param airborne_ceiling 50 km up to generation 8, 80 km from M9 on
 constexpr MotionLimits motion_limits(DynamicModel model, Metres airborne_ceiling) {
-    const auto limits = [](double height, double horizontal, double vertical) {
-        return MotionLimits{Metres(height), MetresPerSecond(horizontal), MetresPerSecond(vertical)};
+    if (model >= DynamicModel::airborne_1g) return {.height = airborne_ceiling};
+    struct Row {
+        double height, horizontal_speed, vertical_speed;
     };
-    switch (model) {
-        case DynamicModel::portable:
-            return limits(12'000, 310, 50);
-        case DynamicModel::stationary:
-            return limits(9'000, 10, 6);
-        case DynamicModel::pedestrian:
-            return limits(9'000, 30, 20);
-        case DynamicModel::automotive:
-            return limits(6'000, 100, 15);
-        case DynamicModel::sea:
-            return limits(500, 25, 5);
-        case DynamicModel::airborne_1g:
-        case DynamicModel::airborne_2g:
-        case DynamicModel::airborne_4g:
-            break;
-    }
-    return MotionLimits{.height = airborne_ceiling};
+    constexpr std::array<Row, 5> below_airborne{
+        {{12'000, 310, 50}, {9'000, 10, 6}, {9'000, 30, 20}, {6'000, 100, 15}, {500, 25, 5}}};
+    const Row& row = below_airborne[static_cast<std::size_t>(model)];
+    return {Metres(row.height), MetresPerSecond(row.horizontal_speed), MetresPerSecond(row.vertical_speed)};
 }
 
 /// What a receiver still knows when it starts.

@@ -95,18 +95,9 @@ bool can_move(const Ephemeris& record, std::int64_t days) {
 
 Seconds usual_validity(const Ephemeris& record) {
     if (message_of(record) == NavigationMessage::almanac) return Seconds(static_cast<double>(seconds_per_week));
-    switch (satellite_of(record).constellation) {
-        case Constellation::galileo:
-            return Seconds(14400);
-        case Constellation::beidou:
-            return Seconds(21600);
-        case Constellation::glonass:
-            return Seconds(1800);
-        case Constellation::sbas:
-            return Seconds(360);
-        default:
-            return Seconds(7200);
-    }
+    // In the order of Constellation.
+    static constexpr std::array<double, 7> of_ephemerides{7200, 360, 14400, 21600, 7200, 1800, 7200};
+    return Seconds(of_ephemerides[static_cast<std::size_t>(satellite_of(record).constellation)]);
 }
 
 Seconds EphemerisSelection::validity_of(const Ephemeris& record) const {

@@ -176,43 +176,6 @@ bool sends_signal(SatelliteId satellite, Signal signal, GpsTime when) {
 
 bool sends_modern_signals(SatelliteId beidou) { return beidou.number >= first_of_beidou_3 && !is_beidou_geo(beidou); }
 
-Signal first_signal(Constellation constellation) {
-    switch (constellation) {
-        case Constellation::beidou:
-            return Signal::b1i;
-        case Constellation::glonass:
-            return Signal::g1;
-        case Constellation::navic:
-            return Signal::l5;
-        default:
-            return Signal::l1;
-    }
-}
-
-Hertz carrier_frequency(Signal signal, int frequency_channel) {
-    switch (signal) {
-        case Signal::l1:
-            return Hertz(carrier_frequency_l1);
-        case Signal::l2:
-            return Hertz(carrier_frequency_l2);
-        case Signal::l5:
-            return Hertz(carrier_frequency_l5);
-        case Signal::e5b:
-            return Hertz(1207.14e6);
-        case Signal::e6:
-            return Hertz(1278.75e6);
-        case Signal::b1i:
-            return Hertz(1561.098e6);
-        case Signal::b3i:
-            return Hertz(1268.52e6);
-        case Signal::g1:
-            return Hertz(1602e6 + 562.5e3 * frequency_channel);
-        case Signal::g2:
-            return Hertz(1246e6 + 437.5e3 * frequency_channel);
-    }
-    return Hertz(carrier_frequency_l1);
-}
-
 std::span<const Signal> emulated_signals(Constellation constellation) {
     static constexpr std::array gps{Signal::l1, Signal::l2, Signal::l5};
     static constexpr std::array galileo{Signal::l1, Signal::e5b, Signal::l5};
@@ -220,70 +183,61 @@ std::span<const Signal> emulated_signals(Constellation constellation) {
     static constexpr std::array glonass{Signal::g1, Signal::g2};
     static constexpr std::array sbas{Signal::l1};
     static constexpr std::array navic{Signal::l5};
-    switch (constellation) {
-        case Constellation::galileo:
-            return galileo;
-        case Constellation::beidou:
-            return beidou;
-        case Constellation::glonass:
-            return glonass;
-        case Constellation::sbas:
-            return sbas;
-        case Constellation::navic:
-            return navic;
-        case Constellation::gps:
-        case Constellation::qzss:
-            break;
-    }
-    return gps;
+    static constexpr std::array<std::span<const Signal>, constellation_names.size()> all{gps, sbas,    galileo, beidou,
+                                                                                         gps, glonass, navic};
+    return all[static_cast<std::size_t>(constellation)];
 }
 
+Signal first_signal(Constellation constellation) { return emulated_signals(constellation).front(); }
+
 std::optional<Signal> second_signal(Constellation constellation, SecondBand band) {
-    const bool l5 = band == SecondBand::l5;
-    switch (constellation) {
-        case Constellation::gps:
-        case Constellation::qzss:
-            return l5 ? Signal::l5 : Signal::l2;
-        case Constellation::galileo:
-        case Constellation::beidou:
-            return l5 ? Signal::l5 : Signal::e5b;
-        case Constellation::glonass:
-            return l5 ? std::nullopt : std::optional(Signal::g2);
-        case Constellation::sbas:
-        case Constellation::navic:
-            break;
-    }
+    const std::span<const Signal> others = emulated_signals(constellation).subspan(1);
+    if (others.empty()) return std::nullopt;
+    if (band == SecondBand::l2) return others.front();
+    return others.back() == Signal::l5 ? std::optional(Signal::l5) : std::nullopt;
+}
+
+Hertz carrier_frequency(Signal signal, int frequency_channel) {
+    if (signal == Signal::g1) return Hertz(1602e6 + 562.5e3 * frequency_channel);
+    if (signal == Signal::g2) return Hertz(1246e6 + 437.5e3 * frequency_channel);
+    // In the order of Signal.
+    static constexpr std::array<double, 7> without_channels{
+        carrier_frequency_l1, carrier_frequency_l2, carrier_frequency_l5, 1207.14e6, 1278.75e6, 1561.098e6, 1268.52e6};
+    return Hertz(without_channels[static_cast<std::size_t>(signal)]);
+}
+
+std::optional<std::string_view> rinex_signal_codes(Constellation constellation, Signal signal) {
+    struct Codes {
+        Constellation constellation;
+        Signal signal;
+        std::string_view codes;
+    };
+    using enum Constellation;
+    static constexpr std::array<Codes, 17> all{{{gps, Signal::l1, "1CPWYSLXMD"},
+                                                {gps, Signal::l2, "2LXSWPCDYM"},
+                                                {gps, Signal::l5, "5QXI"},
+                                                {qzss, Signal::l1, "1CESLXZB"},
+                                                {qzss, Signal::l2, "2LXS"},
+                                                {qzss, Signal::l5, "5QXIPZD"},
+                                                {galileo, Signal::l1, "1CXBZA"},
+                                                {galileo, Signal::e5b, "7QXI"},
+                                                {galileo, Signal::l5, "5QXI"},
+                                                {beidou, Signal::b1i, "2IXQ"},
+                                                {beidou, Signal::e5b, "7IXQ"},
+                                                {beidou, Signal::b3i, "6IXQA"},
+                                                {beidou, Signal::l5, "5PXD"},
+                                                {glonass, Signal::g1, "1CP"},
+                                                {glonass, Signal::g2, "2CP"},
+                                                {sbas, Signal::l1, "1C"},
+                                                {navic, Signal::l5, "5AXCB"}}};
+    for (const Codes& c : all)
+        if (c.constellation == constellation && c.signal == signal) return c.codes;
     return std::nullopt;
 }
 
 std::optional<std::string_view> rinex_signal_code(Constellation constellation, Signal signal) {
-    struct Code {
-        Constellation constellation;
-        Signal signal;
-        std::string_view code;
-    };
-    using enum Constellation;
-    // Of several codes of a signal the one that u-blox receivers track: L2C long, E1-C, E5a-Q, E5b-Q, B2a's pilot.
-    static constexpr std::array<Code, 17> codes{{{gps, Signal::l1, "1C"},
-                                                 {gps, Signal::l2, "2L"},
-                                                 {gps, Signal::l5, "5Q"},
-                                                 {qzss, Signal::l1, "1C"},
-                                                 {qzss, Signal::l2, "2L"},
-                                                 {qzss, Signal::l5, "5Q"},
-                                                 {galileo, Signal::l1, "1C"},
-                                                 {galileo, Signal::e5b, "7Q"},
-                                                 {galileo, Signal::l5, "5Q"},
-                                                 {beidou, Signal::b1i, "2I"},
-                                                 {beidou, Signal::e5b, "7I"},
-                                                 {beidou, Signal::b3i, "6I"},
-                                                 {beidou, Signal::l5, "5P"},
-                                                 {glonass, Signal::g1, "1C"},
-                                                 {glonass, Signal::g2, "2C"},
-                                                 {sbas, Signal::l1, "1C"},
-                                                 {navic, Signal::l5, "5A"}}};
-    for (const Code& c : codes)
-        if (c.constellation == constellation && c.signal == signal) return c.code;
-    return std::nullopt;
+    const auto codes = rinex_signal_codes(constellation, signal);
+    return codes ? std::optional(codes->substr(0, 2)) : std::nullopt;
 }
 
 TransmittedSignals transmitted_signals(const Ephemeris& record) {
@@ -319,18 +273,6 @@ std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal)
     const auto delay = group_delay(record, signal);
     if (!delay) return std::nullopt;
     return Seconds(delay->value() - table_clock_delay(record));
-}
-
-double rejection_quality(JammerKind kind) {
-    switch (kind) {
-        case JammerKind::narrow_band:
-            return 1;
-        case JammerKind::wide_band:
-            return 2.2;
-        case JammerKind::matched:
-            break;
-    }
-    return 1.5;
 }
 
 DbHz cn0_under_interference(DbHz cn0, Decibels jammer_to_signal, const InterferenceRejection& rejection) {

@@ -3,6 +3,7 @@
 /// What a jammer leaves of a signal.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -37,8 +38,8 @@ bool sends_modern_signals(SatelliteId beidou);
 /// @param frequency_channel of GLONASS: 1602 + 0.5625 k and 1246 + 0.4375 k MHz (ICD L1, L2 GLONASS, table 3.1)
 Hertz carrier_frequency(Signal signal, int frequency_channel = 0);
 
-/// The signals that are emulated for a system, the first one first: L1, L2, L5; E1, E5b, E5a; B1I, B2I, B3I, B2a; G1,
-/// G2; of SBAS L1, of NavIC L5.
+/// The signals that are emulated for a system, first first_signal(), then that of SecondBand::l2, where there is one:
+/// L1, L2, L5; E1, E5b, E5a; B1I, B2I, B3I, B2a; G1, G2; of SBAS L1, of NavIC L5.
 std::span<const Signal> emulated_signals(Constellation constellation);
 inline constexpr std::size_t most_signals = 4;
 
@@ -51,8 +52,11 @@ enum class SecondBand {
 /// Nothing for a system that sends none in that band, or none besides its first.
 std::optional<Signal> second_signal(Constellation constellation, SecondBand band);
 
-/// Band and attribute of a signal in RINEX 3 observation codes (RINEX 3.04, tables 4 to 10): "1C" of GPS L1.
-/// Nothing for a signal that the system does not send.
+/// The band of a signal in RINEX 3 observation codes, then the attributes that it may have, the best first
+/// (RINEX 3.05, tables 12 to 18): "5QXI" of GPS L5 is 5Q, 5X and 5I. Nothing for a signal that is not emulated.
+std::optional<std::string_view> rinex_signal_codes(Constellation constellation, Signal signal);
+/// Band and attribute of the first of these, which is the one that u-blox receivers track: "1C" of GPS L1, L2C long,
+/// E1-C, E5a-Q, E5b-Q, B2a's pilot.
 std::optional<std::string_view> rinex_signal_code(Constellation constellation, Signal signal);
 
 /// A signal as a satellite sends it.
@@ -98,7 +102,9 @@ enum class JammerKind {
     wide_band,    ///< Q 2.2
 };
 /// Its Q.
-double rejection_quality(JammerKind kind);
+constexpr double rejection_quality(JammerKind kind) {
+    return std::array{1.0, 1.5, 2.2}[static_cast<std::size_t>(kind)];
+}
 
 /// Power of a signal in an isotropic antenna that J/S refers to (MODELS.md 7.7).
 inline constexpr DecibelWatts nominal_signal_power{-157};
