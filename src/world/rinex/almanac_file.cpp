@@ -20,17 +20,8 @@ bool contains_word(std::string_view line, std::string_view word) {
     return lower_case(line).find(word) != std::string::npos;
 }
 
-std::optional<Line> next_filled(LineReader& lines) {
-    std::optional<Line> line = lines.next();
-    while (line && words_of(line->text).empty())
-        line = lines.next();
-    return line;
-}
-
-tl::unexpected<Error> almanac_error(std::string_view name, int line, std::string_view found,
-                                    std::string_view expected) {
-    return fail(ErrorCode::input, fmt::format("{}:{}: found {}; expected {}", name, line, found, expected));
-}
+// Unlike the columns of RINEX what stands here may be set with tabs.
+constexpr std::string_view blanks = " \t";
 
 // What an almanac says of one number, and what can be.
 struct AlmanacRange {
@@ -51,9 +42,10 @@ enum AlmanacField {
     anomaly,
     af0,
     af1,
-    week
+    week,
+    ignored
 };
-constexpr std::size_t almanac_field_count = 13;
+constexpr std::size_t almanac_field_count = ignored;
 using AlmanacValues = std::array<double, almanac_field_count>;
 
 // In the order of a YUMA record; angles in radians.
@@ -109,21 +101,13 @@ KeplerEphemeris almanac_record(const AlmanacValues& v, GpsTime near) {
     return e;
 }
 
-// Unlike the columns of RINEX what stands here may be set with tabs.
-std::string_view without_tabs_around(std::string_view text) {
-    constexpr std::string_view blanks = " \t";
-    const std::size_t first = text.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
-}
-
 // "******** Week 862 almanac for PRN-01 ********" and thirteen lines "name: value", in any order.
 class YumaReading {
 public:
     YumaReading(std::string_view text, std::string_view name, GpsTime near) : lines_(text), name_(name), near_(near) {}
 
     Result<std::vector<KeplerEphemeris>> read() {
-        for (std::optional<Line> line = next_filled(lines_); line; line = next_filled(lines_)) {
+        for (std::optional<Line> line = lines_.next_filled(blanks); line; line = lines_.next_filled(blanks)) {
             Result<void> taken;
             if (line->text.find("**") != std::string_view::npos) {
                 taken = finish();
@@ -134,28 +118,27 @@ public:
             if (!taken) return fail(taken.error());
         }
         if (const Result<void> finished = finish(); !finished) return fail(finished.error());
-        if (records_.empty()) return almanac_error(name_, lines_.number(), "no record", "records of satellites");
+        if (records_.empty()) return refused(name_, lines_.number(), "no record", "records of satellites");
         return std::move(records_);
     }
 
 private:
     Result<void> take(const Line& line) {
         const std::size_t colon = line.text.find(':');
-        const std::string_view key = without_tabs_around(line.text.substr(0, colon));
+        const std::string_view key = trimmed(line.text.substr(0, colon), blanks);
         std::size_t field = 0;
         while (field < almanac_field_count && !key.starts_with(almanac_ranges[field].name))
             ++field;
         if (colon == std::string_view::npos || field == almanac_field_count || first_line_ == 0)
-            return almanac_error(name_, line.number, in_quotes(line.text), "a line such as 'Eccentricity: 0.01'");
+            return refused(name_, line.number, in_quotes(line.text), "a line such as 'Eccentricity: 0.01'");
         if (given_[field])
-            return almanac_error(name_, line.number,
-                                 fmt::format("'{}' for the second time", almanac_ranges[field].name),
-                                 "one of each in a record");
-        const std::string_view text = without_tabs_around(line.text.substr(colon + 1));
+            return refused(name_, line.number, fmt::format("'{}' for the second time", almanac_ranges[field].name),
+                           "one of each in a record");
+        const std::string_view text = trimmed(line.text.substr(colon + 1), blanks);
         const std::optional<double> value = real_field(text);
         if (!value || text.empty())
-            return almanac_error(name_, line.number, in_quotes(text),
-                                 fmt::format("a number, {}", almanac_ranges[field].name));
+            return refused(name_, line.number, in_quotes(text),
+                           fmt::format("a number, {}", almanac_ranges[field].name));
         given_[field] = true;
         values_[field] = *value;
         return {};
@@ -166,10 +149,10 @@ private:
         if (first_line_ == 0) return {};
         for (std::size_t i = 0; i < given_.size(); ++i)
             if (!given_[i])
-                return almanac_error(name_, first_line_, fmt::format("a record without '{}'", almanac_ranges[i].name),
-                                     "a record of 13 lines");
+                return refused(name_, first_line_, fmt::format("a record without '{}'", almanac_ranges[i].name),
+                               "a record of 13 lines");
         if (const auto words = impossible(values_))
-            return almanac_error(name_, first_line_, "a record that no satellite sends", *words);
+            return refused(name_, first_line_, "a record that no satellite sends", *words);
         records_.push_back(almanac_record(values_, near_));
         given_ = {};
         return {};
@@ -184,6 +167,23 @@ private:
     std::vector<KeplerEphemeris> records_;
 };
 
+// What a line of a SEM record tells, and the fields that its numbers go into.
+struct SemLine {
+    std::string_view what;
+    std::size_t count;
+    std::array<AlmanacField, 3> fields;
+};
+constexpr std::array<SemLine, 8> sem_lines{{
+    {"a PRN", 1, {prn}},
+    {"a satellite's vehicle number", 1, {ignored}},
+    {"an accuracy index", 1, {ignored}},
+    {"three numbers: eccentricity, inclination and node rate", 3, {eccentricity, inclination, node_rate}},
+    {"three numbers: root of the semi-major axis, node and perigee", 3, {sqrt_a, node, perigee}},
+    {"three numbers: mean anomaly, af0 and af1", 3, {anomaly, af0, af1}},
+    {"the health", 1, {health}},
+    {"the satellite's configuration", 1, {ignored}},
+}};
+
 // Number of records and a name; week and time of applicability; then eight lines for each satellite. Angles in
 // semicircles, the inclination as its difference from 0.3.
 class SemReading {
@@ -191,9 +191,9 @@ public:
     SemReading(std::string_view text, std::string_view name, GpsTime near) : lines_(text), name_(name), near_(near) {}
 
     Result<std::vector<KeplerEphemeris>> read() {
-        const auto count = numbers<1>("the number of records", 2);
+        const auto count = numbers("the number of records", 1, 2);
         if (!count) return fail(count.error());
-        const auto time = numbers<2>("the week and the time of applicability");
+        const auto time = numbers("the week and the time of applicability", 2, 2);
         if (!time) return fail(time.error());
         values_[week] = (*time)[0];
         values_[toa] = (*time)[1];
@@ -201,66 +201,48 @@ public:
         while (const std::optional<Line> ahead = peek()) {
             if (const Result<void> taken = satellite(); !taken) return fail(taken.error());
             if (const auto words = impossible(values_))
-                return almanac_error(name_, ahead->number, "a record that no satellite sends", *words);
+                return refused(name_, ahead->number, "a record that no satellite sends", *words);
             records.push_back(almanac_record(values_, near_));
         }
         if (static_cast<double>(records.size()) != (*count)[0])
-            return almanac_error(name_, lines_.number(), fmt::format("{} records", records.size()),
-                                 fmt::format("{}, as the first line says", (*count)[0]));
-        if (records.empty()) return almanac_error(name_, 1, "no records", "one at least");
+            return refused(name_, lines_.number(), fmt::format("{} records", records.size()),
+                           fmt::format("{}, as the first line says", (*count)[0]));
+        if (records.empty()) return refused(name_, 1, "no records", "one at least");
         return records;
     }
 
 private:
     std::optional<Line> peek() {
         LineReader ahead = lines_;
-        return next_filled(ahead);
+        return ahead.next_filled(blanks);
     }
 
-    // The next line that is not empty: `count` numbers, and at most `most` words in all.
-    template <std::size_t count>
-    Result<std::array<double, count>> numbers(std::string_view what, std::size_t most = count) {
-        const std::optional<Line> line = next_filled(lines_);
-        if (!line) return almanac_error(name_, lines_.number(), "the end of the file", what);
+    // The next line that is not empty: `count` numbers, three at most, and at most `most` words in all.
+    Result<std::array<double, 3>> numbers(std::string_view what, std::size_t count, std::size_t most) {
+        const std::optional<Line> line = lines_.next_filled(blanks);
+        if (!line) return refused(name_, lines_.number(), "the end of the file", what);
         const std::vector<std::string_view> words = words_of(line->text);
-        std::array<double, count> values{};
+        std::array<double, 3> values{};
         bool good = words.size() >= count && words.size() <= most;
         for (std::size_t i = 0; good && i < count; ++i) {
             const std::optional<double> value = real_field(words[i]);
             good = value.has_value();
             values[i] = value.value_or(0);
         }
-        if (!good) return almanac_error(name_, line->number, in_quotes(line->text), what);
+        if (!good) return refused(name_, line->number, in_quotes(line->text), what);
         return values;
     }
 
     Result<void> satellite() {
-        constexpr double semicircle = std::numbers::pi;
-        const auto id = numbers<1>("a PRN");
-        if (!id) return fail(id.error());
-        for (const std::string_view ignored : {"a satellite's vehicle number", "an accuracy index"})
-            if (const auto value = numbers<1>(ignored); !value) return fail(value.error());
-        const auto shape = numbers<3>("three numbers: eccentricity, inclination and node rate");
-        if (!shape) return fail(shape.error());
-        const auto plane = numbers<3>("three numbers: root of the semi-major axis, node and perigee");
-        if (!plane) return fail(plane.error());
-        const auto clock = numbers<3>("three numbers: mean anomaly, af0 and af1");
-        if (!clock) return fail(clock.error());
-        const auto bits = numbers<1>("the health");
-        if (!bits) return fail(bits.error());
-        if (const auto configuration = numbers<1>("the satellite's configuration"); !configuration)
-            return fail(configuration.error());
-        values_[prn] = (*id)[0];
-        values_[health] = (*bits)[0];
-        values_[eccentricity] = (*shape)[0];
-        values_[inclination] = (0.3 + (*shape)[1]) * semicircle;
-        values_[node_rate] = (*shape)[2] * semicircle;
-        values_[sqrt_a] = (*plane)[0];
-        values_[node] = (*plane)[1] * semicircle;
-        values_[perigee] = (*plane)[2] * semicircle;
-        values_[anomaly] = (*clock)[0] * semicircle;
-        values_[af0] = (*clock)[1];
-        values_[af1] = (*clock)[2];
+        for (const SemLine& line : sem_lines) {
+            const auto given = numbers(line.what, line.count, line.count);
+            if (!given) return fail(given.error());
+            for (std::size_t i = 0; i < line.count; ++i)
+                if (line.fields[i] != ignored) values_[line.fields[i]] = (*given)[i];
+        }
+        values_[inclination] += 0.3;
+        for (const AlmanacField angle : {inclination, node_rate, node, perigee, anomaly})
+            values_[angle] *= std::numbers::pi;
         return {};
     }
 
@@ -272,7 +254,7 @@ private:
 
 bool is_yuma(std::string_view text) {
     LineReader lines(text);
-    const std::optional<Line> first = next_filled(lines);
+    const std::optional<Line> first = lines.next_filled(blanks);
     return first && first->text.starts_with('*') && contains_word(first->text, "almanac");
 }
 
@@ -282,8 +264,8 @@ bool is_whole(std::string_view word) {
 
 bool is_sem(std::string_view text) {
     LineReader lines(text);
-    const std::optional<Line> first = next_filled(lines);
-    const std::optional<Line> second = next_filled(lines);
+    const std::optional<Line> first = lines.next_filled(blanks);
+    const std::optional<Line> second = lines.next_filled(blanks);
     if (!first || !second) return false;
     const auto head = words_of(first->text);
     const auto time = words_of(second->text);

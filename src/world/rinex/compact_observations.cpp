@@ -100,8 +100,7 @@ private:
     using Refusal = tl::unexpected<Error>;
 
     [[nodiscard]] Refusal refuse(std::string_view found, std::string_view expected) const {
-        return fail(ErrorCode::input,
-                    fmt::format("{}:{}: found {}; expected {}", name_, lines_.number(), found, expected));
+        return refused(name_, lines_.number(), found, expected);
     }
     [[nodiscard]] Refusal refuse_end(std::string_view where) const {
         return refuse(fmt::format("the end of the file within {}", where), "a whole compact RINEX file");

@@ -33,8 +33,7 @@ private:
     using Done = Result<bool>;
 
     [[nodiscard]] tl::unexpected<Error> wrong(std::string_view found, std::string_view expected) const {
-        return fail(ErrorCode::input,
-                    fmt::format("{}:{}: found {}; expected {}", name_, lines_.number(), found, expected));
+        return refused(name_, lines_.number(), found, expected);
     }
     // Moves to the next line; false at the end of the text.
     bool advance() {

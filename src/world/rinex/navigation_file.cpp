@@ -36,8 +36,8 @@ bool is_read_ionosphere(const BlockHead& head);
 /// False when the block is damaged.
 bool take_ionosphere(const BlockHead& head, std::span<const Line> lines, BroadcastIonosphere& ionosphere);
 
-/// Reads an STO block (RINEX 4.00, table 31), or nothing when it is damaged.
-std::optional<TimeSystemCorrection> read_time_offset(std::span<const Line> lines);
+/// Whether an STO block (RINEX 4.00, table 31) is whole. Nobody uses what it tells.
+bool is_time_offset(std::span<const Line> lines);
 
 namespace {
 
@@ -124,14 +124,10 @@ bool take_ionosphere(const BlockHead& head, std::span<const Line> lines, Broadca
     return true;
 }
 
-std::optional<TimeSystemCorrection> read_time_offset(std::span<const Line> lines) {
-    if (lines.size() < 2) return std::nullopt;
-    const std::string_view type = trimmed(columns(lines[0].text, 24, 18));
-    const auto tow = block_field(lines.subspan(1), 0);
-    const auto a0 = block_field(lines.subspan(1), 1);
-    const auto a1 = block_field(lines.subspan(1), 2);
-    if (type.size() != 4 || !tow || !a0 || !a1) return std::nullopt;
-    return TimeSystemCorrection{std::string(type), *a0, *a1, *tow, 0};
+bool is_time_offset(std::span<const Line> lines) {
+    if (lines.size() < 2 || trimmed(columns(lines[0].text, 24, 18)).size() != 4) return false;
+    const auto body = lines.subspan(1);  // the time of transmission, a0, a1
+    return block_field(body, 0) && block_field(body, 1) && block_field(body, 2);
 }
 
 }  // namespace skyloop::inline world::rinex
@@ -152,7 +148,6 @@ public:
         file_.version = header->version;
         system_ = header->system;
         file_.ionosphere = header->ionosphere;
-        file_.time_corrections = std::move(header->time_corrections);
         file_.leap_seconds = header->leap_seconds;
         file_.warnings = std::move(header->warnings);
 
@@ -169,11 +164,7 @@ public:
     }
 
 private:
-    void advance() {
-        do
-            line_ = lines_.next();
-        while (line_ && is_blank(line_->text));
-    }
+    void advance() { line_ = lines_.next_filled(); }
     // A line that continues the record at hand.
     [[nodiscard]] bool continues() const { return line_ && !begins_record(line_->text, major_); }
     void skip_record() {
@@ -200,8 +191,7 @@ private:
 
     void other_block(const Line& first, const BlockHead& head, std::span<const Line> body) {
         if (head.type == "STO") {
-            auto correction = read_time_offset(body);
-            if (correction) return file_.time_corrections.push_back(std::move(*correction));
+            if (is_time_offset(body)) return;
             return tally(file_.skipped.defective, defective_, first.number, "a damaged time offset block",
                          "an epoch, the name of an offset, and three numbers in two lines");
         }
@@ -255,28 +245,23 @@ private:
     }
 
     void stray() {
-        stray_.add(sentence(line_->number, in_quotes(line_->text), "the first line of a record"));
+        stray_.add(at_line(name_, line_->number, in_quotes(line_->text), "the first line of a record"));
         advance();
     }
 
-    [[nodiscard]] std::string sentence(int line, std::string_view found, std::string_view expected) const {
-        return fmt::format("{}:{}: found {}; expected {}", name_, line, found, expected);
-    }
     void tally(int& counter, DefectTally& tally, int line, std::string_view found, std::string_view expected) const {
         ++counter;
-        tally.add(sentence(line, found, expected));
+        tally.add(at_line(name_, line, found, expected));
     }
 
     Result<NavigationFile> nothing_read() const {
         for (const DefectTally* t : {&defective_, &incomplete_, &stray_})
             if (t->count > 0) return fail(ErrorCode::input, t->first + "; no record could be read");
         if (!file_.skipped.messages.empty())
-            return fail(ErrorCode::input,
-                        sentence(lines_.number(), fmt::format("only messages of other kinds ({})", messages()),
-                                 "ephemerides of LNAV, INAV, FNAV, D1, D2, FDMA or SBAS"));
+            return refused(name_, lines_.number(), fmt::format("only messages of other kinds ({})", messages()),
+                           "ephemerides of LNAV, INAV, FNAV, D1, D2, FDMA or SBAS");
         if (!file_.warnings.empty()) return fail(ErrorCode::input, file_.warnings.front() + "; no record follows");
-        return fail(ErrorCode::input,
-                    sentence(lines_.number(), "the end of the file and no ephemeris", "records after the header"));
+        return refused(name_, lines_.number(), "the end of the file and no ephemeris", "records after the header");
     }
 
     void warn() {

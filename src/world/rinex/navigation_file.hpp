@@ -23,21 +23,11 @@ struct SkippedRecords {
     bool operator==(const SkippedRecords&) const = default;
 };
 
-/// The offset of one time scale against another, a0 + a1·(t − t_ref), as headers and STO blocks give it.
-struct TimeSystemCorrection {
-    std::string type;  ///< "GPUT", "GAUT", "GAGP", "GLUT", …: RINEX 3.05, table A5
-    double a0 = 0;     ///< s
-    double a1 = 0;     ///< s/s
-    double tow = 0;    ///< reference, s of week; in STO blocks the time of transmission
-    int week = 0;      ///< of the reference; 0 where the file does not tell
-};
-
 /// What a navigation file holds: the ephemerides of all systems, and what its header says.
 struct NavigationFile {
     double version = 0;
-    std::vector<Ephemeris> records;  ///< in the order of the file, repetitions included
-    BroadcastIonosphere ionosphere;  ///< the first of each system
-    std::vector<TimeSystemCorrection> time_corrections;
+    std::vector<Ephemeris> records;   ///< in the order of the file, repetitions included
+    BroadcastIonosphere ionosphere;   ///< the first of each system
     std::optional<int> leap_seconds;  ///< GPST − UTC, s
     SkippedRecords skipped;
     std::vector<std::string> warnings;  ///< one line for each kind of thing passed over, naming file and first line

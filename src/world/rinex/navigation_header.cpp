@@ -8,7 +8,6 @@
 namespace skyloop::inline world::rinex {
 namespace {
 
-constexpr std::string_view version_label = "RINEX VERSION / TYPE";
 constexpr std::string_view end_label = "END OF HEADER";
 
 // Every label of the navigation headers of RINEX 2.00 to 4.02, so that a misspelt one is noticed.
@@ -35,35 +34,16 @@ constexpr std::array<std::string_view, 18> known_labels{
 
 constexpr std::string_view what_is_read = "navigation data (RINEX 2.00-2.12, 3.00-3.05 or 4.00-4.02)";
 
-tl::unexpected<Error> header_error(std::string_view name, int line, std::string_view found, std::string_view expected) {
-    return fail(ErrorCode::input, fmt::format("{}:{}: found {}; expected {}", name, line, found, expected));
-}
-
-bool supported(double version) {
-    return (version >= 2.0 && version < 2.125) || (version >= 3.0 && version < 3.055) ||
-           (version >= 4.0 && version < 4.025);
-}
-
 // Version 2 has a file type for each system.
 std::optional<Constellation> version_2_system(char type, char system) {
-    switch (type) {
-        case 'N':  // the system may follow, as from version 3 on
-            return constellation_from_letter(system).value_or(Constellation::gps);
-        case 'G':
-            return Constellation::glonass;
-        case 'H':
-            return Constellation::sbas;
-        case 'E':
-        case 'L':
-            return Constellation::galileo;
-        case 'J':
-        case 'Q':
-            return Constellation::qzss;
-        case 'C':
-            return Constellation::beidou;
-        default:
-            return std::nullopt;
-    }
+    // The system may follow, as from version 3 on.
+    if (type == 'N') return constellation_from_letter(system).value_or(Constellation::gps);
+    using enum Constellation;
+    static constexpr std::array<std::pair<char, Constellation>, 7> of_one_system{
+        {{'G', glonass}, {'H', sbas}, {'E', galileo}, {'L', galileo}, {'J', qzss}, {'Q', qzss}, {'C', beidou}}};
+    for (const auto& [letter, its_system] : of_one_system)
+        if (letter == type) return its_system;
+    return std::nullopt;
 }
 
 // What a file of this type holds when it is not what is read, or an empty text.
@@ -76,28 +56,6 @@ std::string other_content(int major, char type, char system) {
     return fmt::format("satellite system {}", in_quotes(std::string_view(&system, 1)));
 }
 
-struct VersionLine {
-    double version = 0;
-    Constellation system = Constellation::gps;
-};
-
-Result<VersionLine> read_version(const Line& line, std::string_view name) {
-    if (header_label(line.text) != version_label)
-        return header_error(name, line.number, line.text.empty() ? "an empty line" : in_quotes(line.text),
-                            fmt::format("a RINEX header, its label '{}' in columns 61-80, or the first line of a YUMA "
-                                        "or SEM almanac",
-                                        version_label));
-    const std::string_view field = columns(line.text, 0, 20);
-    const std::optional<double> version = real_field(field);
-    if (!version || !supported(*version))
-        return header_error(name, line.number, fmt::format("RINEX version {}", in_quotes(field)), what_is_read);
-    const char type = line.text[20];
-    const char system = line.text[40];
-    const std::string other = other_content(static_cast<int>(*version), type, system);
-    if (!other.empty()) return header_error(name, line.number, other, what_is_read);
-    return VersionLine{*version, version_2_system(type, system).value_or(Constellation::gps)};
-}
-
 // The values of one header line as they accumulate to a NavigationHeader.
 class HeaderReading {
 public:
@@ -108,18 +66,16 @@ public:
         if (label == "ION ALPHA") coefficients(line, 2, pairs_[0].alpha);
         if (label == "ION BETA") coefficients(line, 2, pairs_[0].beta);
         if (label == "IONOSPHERIC CORR") ionosphere(line);
-        if (label == "TIME SYSTEM CORR") time_correction(line, columns(line.text, 0, 4), {5, 22, 38, 45});
-        if (label == "DELTA-UTC: A0,A1,T,W") time_correction(line, "GPUT", {3, 22, 41, 50});
-        if (label == "CORR TO SYSTEM TIME") time_correction(line, "GLUT", {21, 40, 60, 60});
+        if (label == "TIME SYSTEM CORR") time_correction(line, {5, 22, 38, 45});
+        if (label == "DELTA-UTC: A0,A1,T,W") time_correction(line, {3, 22, 41, 50});
+        if (label == "CORR TO SYSTEM TIME") time_correction(line, {21, 40, 60, 60});
         if (label == "LEAP SECONDS") leap_seconds(line);
         if (std::find(known_labels.begin(), known_labels.end(), label) == known_labels.end()) unknown(line);
     }
     [[nodiscard]] const std::optional<Line>& first_unknown() const { return first_unknown_; }
 
-    [[nodiscard]] NavigationHeader finish(const VersionLine& first) {
-        NavigationHeader header;
-        header.version = first.version;
-        header.system = first.system;
+    // Completes what the first line has told.
+    [[nodiscard]] NavigationHeader finish(NavigationHeader header) {
         header.leap_seconds = leap_seconds_;
         BroadcastIonosphere& ionosphere = header.ionosphere;
         const std::array targets{&ionosphere.gps, &ionosphere.qzss, &ionosphere.beidou, &ionosphere.navic};
@@ -137,7 +93,6 @@ public:
         if (galileo_)
             if (const std::array told{(*galileo_)[0], (*galileo_)[1], (*galileo_)[2]}; told != std::array<double, 3>{})
                 ionosphere.galileo = told;
-        header.time_corrections = std::move(time_corrections_);
         if (first_unknown_)
             warnings_.push_back(
                 fmt::format("{}:{}: found {} without a known label in columns 61-80; expected a RINEX header "
@@ -164,17 +119,17 @@ private:
             if (line.text[3] == 'B') coefficients(line, 5, pairs_[i].beta);
         }
     }
-    // Columns of a0, a1, the reference's time of week and its week; the line is as long as the last of them at most.
-    void time_correction(const Line& line, std::string_view type, const std::array<std::size_t, 4>& at) {
-        if (is_blank(columns(line.text, 0, 60))) return;
+    // Nobody uses these, but a damaged one is told. Columns of a0, a1, the reference's time of week and its week; the
+    // line is as long as the last of them at most.
+    void time_correction(const Line& line, const std::array<std::size_t, 4>& at) {
         const std::string_view content = columns(line.text, 0, 60);
+        if (is_blank(content)) return;
         const auto a0 = real_field(columns(content, at[0], at[1] - at[0]));
         const auto a1 = real_field(columns(content, at[1], at[2] - at[1] > 19 ? 19 : at[2] - at[1]));
         const auto tow = real_field(columns(content, at[2], at[3] - at[2]));
         const auto week = whole_field(columns(content, at[3], at[0] == 5 ? 5 : 9));
         if (!a0 || !a1 || !tow || !week)
-            return warn_field(line, at[0], columns(content, at[0], 60 - at[0]), "a time system correction");
-        time_corrections_.push_back({std::string(trimmed(type)), *a0, *a1, *tow, *week});
+            warn_field(line, at[0], columns(content, at[0], 60 - at[0]), "a time system correction");
     }
     void coefficients(const Line& line, std::size_t first, Coefficients& target) {
         if (target || is_blank(columns(line.text, first, 48))) return;
@@ -189,13 +144,9 @@ private:
         target = values;
     }
     void leap_seconds(const Line& line) {
-        // Columns 25-27 may name the time scale; BDT counts leap seconds from another epoch.
-        if (is_blank(columns(line.text, 0, 6)) || columns(line.text, 24, 3) == "BDS") return;
-        const std::optional<int> value = whole_field(columns(line.text, 0, 6));
-        if (value && *value >= 0 && *value < 1000)
-            leap_seconds_ = value;
-        else
-            warn_field(line, 0, columns(line.text, 0, 6), "the number of leap seconds");
+        const auto announced = announced_leap_seconds(line.text);
+        if (!announced) return warn_field(line, 0, columns(line.text, 0, 6), "the number of leap seconds");
+        if (*announced) leap_seconds_ = *announced;
     }
     void warn_field(const Line& line, std::size_t column, std::string_view field, std::string_view expected) {
         warnings_.push_back(fmt::format("{}:{}:{}: found {}; expected {}; line passed over", name_, line.number,
@@ -210,7 +161,6 @@ private:
     std::string_view name_;
     std::array<CoefficientPair, 4> pairs_;
     Coefficients galileo_;
-    std::vector<TimeSystemCorrection> time_corrections_;
     std::optional<int> leap_seconds_;
     std::vector<std::string> warnings_;
     std::optional<Line> first_unknown_;
@@ -220,24 +170,25 @@ private:
 }  // namespace
 
 Result<NavigationHeader> read_header(LineReader& lines, std::string_view name) {
-    std::optional<Line> line = lines.next();
-    while (line && is_blank(line->text))
-        line = lines.next();
-    if (!line) return header_error(name, lines.number(), "an empty file", what_is_read);
-    const Result<VersionLine> version = read_version(*line, name);
-    if (!version) return fail(version.error());
+    const auto first = read_version_line(lines, name, what_is_read, ", or the first line of a YUMA or SEM almanac");
+    if (!first) return fail(first.error());
+    NavigationHeader header;
+    header.version = first->version;
+    const char type = first->line.text[20], system = first->line.text[40];
+    const std::string other = other_content(header.major(), type, system);
+    if (!other.empty()) return refused(name, first->line.number, other, what_is_read);
+    header.system = version_2_system(type, system).value_or(Constellation::gps);
 
     HeaderReading reading(name);
-    while ((line = lines.next())) {
-        if (header_label(line->text) == end_label) return reading.finish(*version);
+    while (const std::optional<Line> line = lines.next()) {
+        if (header_label(line->text) == end_label) return reading.finish(std::move(header));
         reading.take(*line);
     }
     const std::optional<Line>& unknown = reading.first_unknown();
     if (unknown)
-        return header_error(name, unknown->number,
-                            fmt::format("{} in a header without an end", in_quotes(unknown->text)),
-                            "a header line, or 'END OF HEADER' before the records");
-    return header_error(name, lines.number(), "the end of the file within the header", "'END OF HEADER' and records");
+        return refused(name, unknown->number, fmt::format("{} in a header without an end", in_quotes(unknown->text)),
+                       "a header line, or 'END OF HEADER' before the records");
+    return refused(name, lines.number(), "the end of the file within the header", "'END OF HEADER' and records");
 }
 
 }  // namespace skyloop::inline world::rinex

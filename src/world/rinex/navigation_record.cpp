@@ -12,16 +12,6 @@ namespace {
 
 constexpr std::size_t field_width = 19;
 
-bool valid_date(int year, int month, int day) {
-    if (month < 1 || day < 1 || !is_epoch_year(year)) return false;
-    return (std::chrono::year(year) / month / day).ok();
-}
-
-// Some writers round up to hour 24, minute 60 or second 60.
-bool valid_clock(int hour, int minute, double second) {
-    return hour >= 0 && hour <= 24 && minute >= 0 && minute <= 60 && second >= 0 && second <= 60;
-}
-
 }  // namespace
 
 RecordFields::RecordFields(std::span<const Line> lines, int major) : lines_(lines), major_(major) {}
@@ -58,18 +48,13 @@ GpsTime RecordFields::epoch() {
     const std::size_t year_width = major_ == 2 ? 2 : 4;
     const auto part = [&](std::size_t i) { return whole_field(columns(text, year_width + 1 + 3 * (i - 1), 2)); };
     std::optional<int> year = whole_field(text.substr(0, year_width));
-    if (year && major_ == 2) year = *year + (*year >= 80 ? 1900 : 2000);
-    const auto month = part(1), day = part(2), hour = part(3), minute = part(4);
-    const std::optional<double> second = real_field(columns(text, year_width + 12, text.size()));
-    if (!year || !month || !day || !hour || !minute || !second || !valid_date(*year, *month, *day) ||
-        !valid_clock(*hour, *minute, *second)) {
-        if (!defect_)
-            defect_ = Defect{lines_[0].number, static_cast<int>(first) + 1, in_quotes(text),
-                             "a calendar epoch from 1980 to 2269"};
-        return {};
-    }
-    return gps_calendar_time(*year, static_cast<unsigned>(*month), static_cast<unsigned>(*day),
-                             static_cast<unsigned>(*hour), static_cast<unsigned>(*minute), *second);
+    if (year && major_ == 2) year = full_year(*year);
+    const auto second = real_field(columns(text, year_width + 12, text.size()));
+    const auto time = calendar_epoch({year, part(1), part(2), part(3), part(4), second}, {24, 60, 60});
+    if (!time && !defect_)
+        defect_ = Defect{lines_[0].number, static_cast<int>(first) + 1, in_quotes(text),
+                         "a calendar epoch from 1980 to 2269"};
+    return time.value_or(GpsTime{});
 }
 
 void RecordFields::refuse(std::size_t line, std::size_t column, std::string found, std::string expected) {

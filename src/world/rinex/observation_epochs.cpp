@@ -18,18 +18,10 @@ constexpr EpochColumns epoch_columns_3{2, 4, 7, 18, 31, 32};
 std::optional<GpsTime> epoch_time(std::string_view line, const EpochColumns& at) {
     const auto part = [&](std::size_t i) { return whole_field(columns(line, at.month + 3 * i, 2)); };
     const std::string_view year_text = columns(line, at.year, at.year_width);
+    if (is_blank(year_text)) return std::nullopt;
     std::optional<int> year = whole_field(year_text);
-    const auto month = part(0), day = part(1), hour = part(2), minute = part(3);
-    const std::optional<double> second = real_field(columns(line, at.second, 11));
-    if (is_blank(year_text) || !year || !month || !day || !hour || !minute || !second) return std::nullopt;
-    if (at.year_width == 2) year = *year + (*year >= 80 ? 1900 : 2000);
-    if (!is_epoch_year(*year) || *month < 1 || *month > 12 || *day < 1 ||
-        !(std::chrono::year(*year) / *month / *day).ok())
-        return std::nullopt;
-    // Some writers round up to second 60.
-    if (*hour < 0 || *hour > 23 || *minute < 0 || *minute > 59 || *second < 0 || *second > 60) return std::nullopt;
-    return gps_calendar_time(*year, static_cast<unsigned>(*month), static_cast<unsigned>(*day),
-                             static_cast<unsigned>(*hour), static_cast<unsigned>(*minute), *second);
+    if (year && at.year_width == 2) year = full_year(*year);
+    return calendar_epoch({year, part(0), part(1), part(2), part(3), real_field(columns(line, at.second, 11))}, {});
 }
 
 // A field of an observation: F14.3 and two digits.
@@ -113,13 +105,6 @@ std::optional<EpochHead> epoch_head(std::string_view line, int major) {
     EpochHead head{epoch_time(line, at), *flag, *count};
     if (!head.time && !head.event()) return std::nullopt;
     return head;
-}
-
-GpsTime epoch_in_gpst(GpsTime written, std::string_view time_system) {
-    if (time_system == "BDT") return written + bdt_lag;
-    if (time_system != "GLO") return written;
-    const LeapSeconds& leap = LeapSeconds::announced();
-    return written + std::chrono::seconds(leap.offset(written + std::chrono::seconds(leap.offset(written))));
 }
 
 std::string_view SatelliteRecord::field(int index) const {

@@ -8,28 +8,6 @@
 namespace skyloop::inline world::rinex {
 namespace {
 
-// A band of a system and the attributes of its codes, the best first (RINEX 3.05, tables 12 to 18). In version 2 the
-// band alone names the observation, and P is a code of its own.
-struct SignalBand {
-    Constellation system;
-    Signal signal;
-    char band;
-    std::string_view attributes;
-};
-
-using enum Constellation;
-constexpr std::array signal_bands{
-    SignalBand{gps, Signal::l1, '1', "CPWYSLXMD"}, SignalBand{gps, Signal::l2, '2', "LXSWPCDYM"},
-    SignalBand{gps, Signal::l5, '5', "QXI"},       SignalBand{qzss, Signal::l1, '1', "CESLXZB"},
-    SignalBand{qzss, Signal::l2, '2', "LXS"},      SignalBand{qzss, Signal::l5, '5', "QXIPZD"},
-    SignalBand{galileo, Signal::l1, '1', "CXBZA"}, SignalBand{galileo, Signal::e5b, '7', "QXI"},
-    SignalBand{galileo, Signal::l5, '5', "QXI"},   SignalBand{beidou, Signal::b1i, '2', "IXQ"},
-    SignalBand{beidou, Signal::e5b, '7', "IXQ"},   SignalBand{beidou, Signal::b3i, '6', "IXQA"},
-    SignalBand{beidou, Signal::l5, '5', "PXD"},    SignalBand{glonass, Signal::g1, '1', "CP"},
-    SignalBand{glonass, Signal::g2, '2', "CP"},    SignalBand{sbas, Signal::l1, '1', "C"},
-    SignalBand{navic, Signal::l5, '5', "AXCB"},
-};
-
 int column_of(std::span<const std::string> types, const std::string& type) {
     const auto found = std::find(types.begin(), types.end(), type);
     return found == types.end() ? -1 : static_cast<int>(found - types.begin());
@@ -42,31 +20,33 @@ void add_code(std::vector<CodeColumns>& codes, std::span<const std::string> type
     if (c.pseudorange >= 0 || c.phase >= 0 || c.doppler >= 0) codes.push_back(c);
 }
 
-// Version 2: "C1" and "P1" share phase, Doppler and strength.
-void add_codes_of_version_2(std::vector<CodeColumns>& codes, std::span<const std::string> types, const SignalBand& b) {
-    const auto add_band = [&](char band) {
-        const bool precise_first = b.signal == Signal::l2;
-        add_code(codes, types, precise_first ? 'P' : 'C', std::string(1, band));
-        add_code(codes, types, precise_first ? 'C' : 'P', std::string(1, band));
+// In version 2 the band alone names the observation, and P is a code of its own: "C1" and "P1" share phase, Doppler and
+// strength.
+void add_codes_of_version_2(std::vector<CodeColumns>& codes, std::span<const std::string> types, Signal signal,
+                            char band) {
+    const auto add_band = [&](char one) {
+        const bool precise_first = signal == Signal::l2;
+        add_code(codes, types, precise_first ? 'P' : 'C', std::string(1, one));
+        add_code(codes, types, precise_first ? 'C' : 'P', std::string(1, one));
     };
-    add_band(b.band);
-    if (b.signal == Signal::b1i) add_band('1');
+    add_band(band);
+    if (signal == Signal::b1i) add_band('1');
 }
 
 }  // namespace
 
 std::vector<SignalColumns> signal_columns(Constellation system, std::span<const std::string> types, double version) {
     std::vector<SignalColumns> result;
-    for (const SignalBand& b : signal_bands) {
-        if (b.system != system) continue;
-        SignalColumns signal{b.signal, {}};
+    for (const Signal emulated : emulated_signals(system)) {
+        const std::string_view codes = rinex_signal_codes(system, emulated).value();
+        SignalColumns signal{emulated, {}};
         if (version < 3) {
-            add_codes_of_version_2(signal.codes, types, b);
+            add_codes_of_version_2(signal.codes, types, emulated, codes[0]);
         } else {
-            for (const char attribute : b.attributes)
-                add_code(signal.codes, types, 'C', std::string{b.band, attribute});
+            for (const char attribute : codes.substr(1))
+                add_code(signal.codes, types, 'C', std::string{codes[0], attribute});
             // From 3.03 on "1X" is B1C.
-            if (b.signal == Signal::b1i)
+            if (emulated == Signal::b1i)
                 for (const char attribute : std::string_view(version < 3.025 ? "IXQ" : "I"))
                     add_code(signal.codes, types, 'C', std::string{'1', attribute});
         }
@@ -84,42 +64,14 @@ constexpr std::size_t most_warnings = 20;
 
 std::size_t index_of(Constellation system) { return static_cast<std::size_t>(system); }
 
-bool observation_version(double version) {
-    return (version >= 2.0 && version < 2.125) || (version >= 3.0 && version < 3.055) ||
-           (version >= 4.0 && version < 4.025);
-}
-
-std::string time_system_of(Constellation system) {
-    switch (system) {
-        case Constellation::glonass:
-            return "GLO";
-        case Constellation::galileo:
-            return "GAL";
-        case Constellation::beidou:
-            return "BDT";
-        case Constellation::qzss:
-            return "QZS";
-        case Constellation::navic:
-            return "IRN";
-        default:
-            return "GPS";
-    }
-}
-
-tl::unexpected<Error> observation_error(std::string_view name, int line, std::string_view found,
-                                        std::string_view expected) {
-    return fail(ErrorCode::input, fmt::format("{}:{}: found {}; expected {}", name, line, found, expected));
-}
+// In the order of Constellation; SBAS keeps the time of GPS.
+constexpr std::array<std::string_view, 7> time_systems{"GPS", "GPS", "GAL", "BDT", "QZS", "GLO", "IRN"};
 
 }  // namespace
 
 Result<void> ObservationHeaderReading::read(LineReader& lines) {
-    std::optional<Line> line = lines.next();
-    while (line && is_blank(line->text))
-        line = lines.next();
-    if (!line) return observation_error(name_, lines.number(), "an empty file", what_observations);
-    if (auto version = version_line(*line); !version) return version;
-    while ((line = lines.next())) {
+    if (auto version = version_line(lines); !version) return version;
+    while (const std::optional<Line> line = lines.next()) {
         if (header_label(line->text) != "END OF HEADER") {
             take(*line);
             continue;
@@ -128,29 +80,22 @@ Result<void> ObservationHeaderReading::read(LineReader& lines) {
         const bool typed =
             std::any_of(layouts_.begin(), layouts_.end(), [](const SystemLayout& l) { return !l.types.empty(); });
         if (typed) return {};
-        return observation_error(name_, line->number, "the end of the header",
-                                 major() == 2 ? "'# / TYPES OF OBSERV' before it" : "'SYS / # / OBS TYPES' before it");
+        return refused(name_, line->number, "the end of the header",
+                       major() == 2 ? "'# / TYPES OF OBSERV' before it" : "'SYS / # / OBS TYPES' before it");
     }
-    return observation_error(name_, lines.number(), "the end of the file within the header",
-                             "'END OF HEADER' and epochs");
+    return refused(name_, lines.number(), "the end of the file within the header", "'END OF HEADER' and epochs");
 }
 
-Result<void> ObservationHeaderReading::version_line(const Line& line) {
-    const std::string_view label = header_label(line.text);
-    if (label != "RINEX VERSION / TYPE")
-        return observation_error(name_, line.number, line.text.empty() ? "an empty line" : in_quotes(line.text),
-                                 "a RINEX header, its label 'RINEX VERSION / TYPE' in columns 61-80");
-    const std::string_view field = columns(line.text, 0, 20);
-    const std::optional<double> version = real_field(field);
-    if (!version || !observation_version(*version))
-        return observation_error(name_, line.number, fmt::format("RINEX version {}", in_quotes(field)),
-                                 what_observations);
+Result<void> ObservationHeaderReading::version_line(LineReader& lines) {
+    const auto first = read_version_line(lines, name_, what_observations);
+    if (!first) return fail(first.error());
+    const auto& [line, version] = *first;
     if (line.text[20] != 'O')
-        return observation_error(name_, line.number, fmt::format("file type {}", in_quotes(columns(line.text, 20, 1))),
-                                 what_observations);
-    facts_.version = *version;
+        return refused(name_, line.number, fmt::format("file type {}", in_quotes(columns(line.text, 20, 1))),
+                       what_observations);
+    facts_.version = version;
     system_ = constellation_from_letter(line.text[40]).value_or(Constellation::gps);
-    facts_.time_system = time_system_of(system_);
+    facts_.time_system = time_systems[index_of(system_)];
     return {};
 }
 
@@ -311,19 +256,15 @@ void ObservationHeaderReading::position(const Line& line) {
 }
 
 void ObservationHeaderReading::leap_seconds(const Line& line) {
-    // Columns 25-27 may name the time scale; BDT counts leap seconds from another epoch.
-    const std::string_view field = columns(line.text, 0, 6);
-    if (is_blank(field) || columns(line.text, 24, 3) == "BDS") return;
-    const std::optional<int> value = whole_field(field);
-    if (!value || *value < 0 || *value >= 1000) return warn(line, in_quotes(field), "the number of leap seconds");
-    facts_.leap_seconds = value;
+    const auto announced = announced_leap_seconds(line.text);
+    if (!announced) return warn(line, announced.error(), "the number of leap seconds");
+    if (*announced) facts_.leap_seconds = *announced;
 }
 
 void ObservationHeaderReading::time_system(const Line& line) {
     const std::string_view system = trimmed(columns(line.text, 48, 3));
     if (system.empty()) return;
-    constexpr std::array<std::string_view, 6> known{"GPS", "GLO", "GAL", "QZS", "BDT", "IRN"};
-    if (std::find(known.begin(), known.end(), system) == known.end())
+    if (std::find(time_systems.begin(), time_systems.end(), system) == time_systems.end())
         return warn(line, in_quotes(system), "a time system: GPS, GLO, GAL, QZS, BDT or IRN");
     facts_.time_system = std::string(system);
 }

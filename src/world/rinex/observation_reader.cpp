@@ -200,14 +200,13 @@ private:
     }
 
     [[nodiscard]] std::string sentence(const Line& line, std::string_view found, std::string_view expected) const {
-        return fmt::format("{}:{}: found {}; expected {}", name_, line.number, found, expected);
+        return at_line(name_, line.number, found, expected);
     }
 
     Result<ObservationFile> no_epoch() const {
         for (const DefectTally* t : {&epochs_, &incomplete_, &stray_})
             if (t->count > 0) return fail(ErrorCode::input, t->first + "; no epoch could be read");
-        return fail(ErrorCode::input,
-                    sentence({{}, lines_.number()}, "the end of the file and no epoch", "epochs after the header"));
+        return refused(name_, lines_.number(), "the end of the file and no epoch", "epochs after the header");
     }
 
     void warn() {

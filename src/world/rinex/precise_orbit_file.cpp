@@ -15,24 +15,9 @@ namespace skyloop::inline world {
 namespace rinex {
 namespace {
 
-// GPST less the time of a file; UTC needs the table of leap seconds.
-struct FileTimeSystem {
-    std::string_view name;
-    Nanoseconds lag;
-    bool utc;
-};
-constexpr std::array<FileTimeSystem, 10> file_time_systems{{
-    {"GPS", Nanoseconds(0), false},
-    {"GAL", Nanoseconds(0), false},
-    {"QZS", Nanoseconds(0), false},
-    {"IRN", Nanoseconds(0), false},
-    {"ccc", Nanoseconds(0), false},  // SP3-a does not tell: GPS
-    {"", Nanoseconds(0), false},
-    {"BDT", bdt_lag, false},
-    {"TAI", std::chrono::seconds(-19), false},
-    {"UTC", Nanoseconds(0), true},
-    {"GLO", Nanoseconds(0), true},
-}};
+// SP3-a does not tell its own: "ccc" or blank is GPS.
+constexpr std::array<std::string_view, 10> file_time_systems{"GPS", "GAL", "QZS", "IRN", "ccc",
+                                                             "",    "BDT", "TAI", "UTC", "GLO"};
 
 class PreciseOrbitReading {
 public:
@@ -50,7 +35,7 @@ public:
         if (positions_ == 0) return failure(lines_.number(), "no position", "positions of satellites");
         return PreciseOrbitFile{PreciseOrbits(std::move(samples_), spacing_),
                                 version_,
-                                std::string(time_system_.name),
+                                std::string(time_system_),
                                 epochs_,
                                 positions_,
                                 without_position_,
@@ -59,7 +44,7 @@ public:
 
 private:
     [[nodiscard]] tl::unexpected<Error> failure(int line, std::string_view found, std::string_view expected) const {
-        return fail(ErrorCode::input, fmt::format("{}:{}: found {}; expected {}", name_, line, found, expected));
+        return refused(name_, line, found, expected);
     }
 
     Result<void> take(const Line& line) {
@@ -76,13 +61,10 @@ private:
     Result<void> time_system(const Line& line) {
         time_system_read_ = true;
         const std::string_view name = trimmed(columns(line.text, 9, 3));
-        const auto found = std::find_if(file_time_systems.begin(), file_time_systems.end(),
-                                        [&](const FileTimeSystem& s) { return s.name == name; });
-        if (found == file_time_systems.end())
+        if (std::find(file_time_systems.begin(), file_time_systems.end(), name) == file_time_systems.end())
             return failure(line.number, fmt::format("time system {}", in_quotes(name)),
                            "GPS, GAL, QZS, IRN, BDT, TAI, UTC or GLO");
-        time_system_ = *found;
-        if (name.empty() || name == "ccc") time_system_.name = "GPS";
+        time_system_ = name.empty() || name == "ccc" ? "GPS" : name;
         return {};
     }
 
@@ -90,18 +72,12 @@ private:
         const auto part = [&](std::size_t column, std::size_t width) {
             return whole_field(columns(line.text, column, width));
         };
-        const auto year = part(3, 4), month = part(8, 2), day = part(11, 2), hour = part(14, 2), minute = part(17, 2);
-        const auto second = real_field(columns(line.text, 20, 11));
-        const bool good = year && month && day && hour && minute && second && is_epoch_year(*year) && *month >= 1 &&
-                          *day >= 1 && (std::chrono::year(*year) / *month / *day).ok() && *hour >= 0 && *hour <= 24 &&
-                          *minute >= 0 && *minute < 60 && *second >= 0 && *second < 61;
-        if (!good) return failure(line.number, in_quotes(line.text), "an epoch from 1980 to 2269");
-        GpsTime time = gps_calendar_time(*year, static_cast<unsigned>(*month), static_cast<unsigned>(*day),
-                                         static_cast<unsigned>(*hour), static_cast<unsigned>(*minute), *second);
-        const LeapSeconds& leap = LeapSeconds::announced();
-        time += time_system_.utc
-                    ? Nanoseconds(std::chrono::seconds(leap.offset(time + std::chrono::seconds(leap.offset(time)))))
-                    : time_system_.lag;
+        constexpr ClockLimits most{24, 59, 60.99999999};  // of leap seconds, too, which are written with 8 decimals
+        const auto written = calendar_epoch(
+            {part(3, 4), part(8, 2), part(11, 2), part(14, 2), part(17, 2), real_field(columns(line.text, 20, 11))},
+            most);
+        if (!written) return failure(line.number, in_quotes(line.text), "an epoch from 1980 to 2269");
+        const GpsTime time = epoch_in_gpst(*written, time_system_);
         if (epochs_ > 0 && time <= time_)
             return failure(line.number, in_quotes(line.text), "an epoch later than the one before");
         if (epochs_ > 0) spacing_ = epochs_ == 1 ? time - time_ : std::min(spacing_, time - time_);
@@ -164,7 +140,7 @@ private:
     std::string_view name_;
     char version_ = 'c';
     bool time_system_read_ = false;
-    FileTimeSystem time_system_ = file_time_systems[0];
+    std::string_view time_system_ = "GPS";
     GpsTime time_;
     Nanoseconds spacing_{0};
     std::map<SatelliteId, std::vector<PreciseSample>> samples_;

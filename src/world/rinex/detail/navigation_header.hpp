@@ -17,7 +17,6 @@ struct NavigationHeader {
     double version = 0;
     Constellation system = Constellation::gps;  ///< of all records of a version 2 file
     BroadcastIonosphere ionosphere;
-    std::vector<TimeSystemCorrection> time_corrections;
     std::optional<int> leap_seconds;
     std::vector<std::string> warnings;
     [[nodiscard]] int major() const { return static_cast<int>(version); }

@@ -24,9 +24,6 @@ struct EpochHead {
 /// Reads it, or nothing: flags 0, 1 and 6 need a time.
 std::optional<EpochHead> epoch_head(std::string_view line, int major);
 
-/// An epoch of a time system in GPST.
-GpsTime epoch_in_gpst(GpsTime written, std::string_view time_system);
-
 /// The observations of one satellite at one epoch: one line, of version 2 one for each five.
 class SatelliteRecord {
 public:

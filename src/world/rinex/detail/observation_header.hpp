@@ -61,7 +61,7 @@ public:
     [[nodiscard]] const ObservationFile& facts() const { return facts_; }
 
 private:
-    Result<void> version_line(const Line& line);
+    Result<void> version_line(LineReader& lines);
     void take(const Line& line);
     bool take_types(const Line& line, std::string_view label);
     void take_facts(const Line& line, std::string_view label);
