@@ -22,7 +22,16 @@ inline constexpr std::size_t max_text_file_size = std::size_t{256} << 20;
 /// read, with `input` when it is larger than `max_size`, or as unpacked() does.
 Result<std::string> read_text_file(const std::filesystem::path& path, std::size_t max_size = max_text_file_size);
 
-/// The same, but archives stay what they are.
+/// What `read` makes of that content and of the file's path as a name for messages. Fails as read_text_file and it do.
+template <class Read>
+auto read_text_with(const std::filesystem::path& path, Read read)
+    -> decltype(read(std::string_view(), std::string_view())) {
+    const Result<std::string> text = read_text_file(path);
+    if (!text) return fail(text.error());
+    return read(*text, path.string());
+}
+
+/// The same as read_text_file, but archives stay what they are.
 Result<std::string> read_uncompressed(const std::filesystem::path& path, std::size_t max_size = max_text_file_size);
 
 /// The first line of a small file, as those of sysfs and procfs are; empty when there is none.

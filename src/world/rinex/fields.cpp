@@ -10,6 +10,13 @@
 
 namespace skyloop::inline world::rinex {
 
+namespace {
+
+// Years of epochs: those of GPS time which 64-bit nanoseconds hold whole, so that all that a run writes is read back.
+constexpr bool is_epoch_year(int year) { return year >= 1980 && year <= 2269; }
+
+}  // namespace
+
 std::optional<Line> LineReader::next() {
     if (rest_.empty()) return std::nullopt;
     const std::size_t end = rest_.find('\n');
@@ -112,6 +119,12 @@ Result<VersionLine> read_version_line(LineReader& lines, std::string_view name, 
                            (version >= 4.0 && version < 4.025);
     if (!supported) return refused(name, line->number, fmt::format("RINEX version {}", in_quotes(field)), wanted);
     return VersionLine{*line, version};
+}
+
+void DefectTally::warn(std::vector<std::string>& warnings, std::string_view outcome) const {
+    if (count == 0) return;
+    warnings.push_back(
+        fmt::format("{}; {}{}", first, outcome, count > 1 ? fmt::format(", and {} more likewise", count - 1) : ""));
 }
 
 std::string at_line(std::string_view name, int line, std::string_view found, std::string_view expected) {

@@ -220,9 +220,7 @@ Result<IonosphereMaps> read_ionex(std::string_view text, std::string_view name, 
 }
 
 Result<IonosphereMaps> read_ionex_file(const std::filesystem::path& path) {
-    const Result<std::string> text = read_text_file(path);
-    if (!text) return fail(text.error());
-    return read_ionex(*text, path.string());
+    return read_text_with(path, [](std::string_view text, std::string_view name) { return read_ionex(text, name); });
 }
 
 }  // namespace skyloop::inline world

@@ -1,4 +1,3 @@
-// The blocks of RINEX 4 that are not ephemerides.
 #include "world/rinex/navigation_file.hpp"
 
 #include <fmt/format.h>
@@ -15,30 +14,8 @@
 #include "detail/navigation_header.hpp"
 #include "detail/navigation_record.hpp"
 
-namespace skyloop::inline world::rinex {
-
-/// "> EPH G02 LNAV"; of coefficients of a whole system "> ION G   LNAV", too.
-struct BlockHead {
-    std::string_view type;  ///< "EPH", "ION", "STO", "EOP"
-    std::optional<Constellation> system;
-    std::optional<SatelliteId> satellite;
-    std::string_view message;  ///< "LNAV", "INAV", "D1D2", …
-};
-BlockHead block_head(std::string_view line);
-
-/// The message that brings ephemerides of this name, of those that are read.
-std::optional<NavigationMessage> message_of_block(const BlockHead& head);
-
-/// True for a block of ionosphere coefficients that is read.
-bool is_read_ionosphere(const BlockHead& head);
-
-/// Takes the coefficients of an ION block, unless the system already has some (RINEX 4.00, tables 33 to 36).
-/// False when the block is damaged.
-bool take_ionosphere(const BlockHead& head, std::span<const Line> lines, BroadcastIonosphere& ionosphere);
-
-/// Whether an STO block (RINEX 4.00, table 31) is whole. Nobody uses what it tells.
-bool is_time_offset(std::span<const Line> lines);
-
+namespace skyloop::inline world {
+namespace rinex {
 namespace {
 
 struct BlockMessage {
@@ -86,7 +63,13 @@ std::optional<KlobucharCoefficients>& klobuchar_of(BroadcastIonosphere& ionosphe
     }
 }
 
-}  // namespace
+// "> EPH G02 LNAV"; of coefficients of a whole system "> ION G   LNAV", too.
+struct BlockHead {
+    std::string_view type;  // "EPH", "ION", "STO", "EOP"
+    std::optional<Constellation> system;
+    std::optional<SatelliteId> satellite;
+    std::string_view message;  // "LNAV", "INAV", "D1D2", …
+};
 
 BlockHead block_head(std::string_view line) {
     const std::string_view sender = columns(line, 6, 3);
@@ -94,6 +77,7 @@ BlockHead block_head(std::string_view line) {
             parse_satellite(sender), trimmed(columns(line, 10, 4))};
 }
 
+// The message that brings ephemerides of this name, of those that are read.
 std::optional<NavigationMessage> message_of_block(const BlockHead& head) {
     if (head.type != "EPH" || !head.satellite) return std::nullopt;
     const char letter = rinex_letter(head.satellite->constellation);
@@ -110,6 +94,8 @@ bool is_read_ionosphere(const BlockHead& head) {
                                       head.system == Constellation::navic);
 }
 
+// Takes the coefficients of an ION block, unless the system already has some (RINEX 4.00, tables 33 to 36).
+// False when the block is damaged.
 bool take_ionosphere(const BlockHead& head, std::span<const Line> lines, BroadcastIonosphere& ionosphere) {
     if (head.message == "IFNV") {
         const auto values = block_fields<3>(lines);
@@ -124,18 +110,12 @@ bool take_ionosphere(const BlockHead& head, std::span<const Line> lines, Broadca
     return true;
 }
 
+// Whether an STO block (RINEX 4.00, table 31) is whole. Nobody uses what it tells.
 bool is_time_offset(std::span<const Line> lines) {
     if (lines.size() < 2 || trimmed(columns(lines[0].text, 24, 18)).size() != 4) return false;
     const auto body = lines.subspan(1);  // the time of transmission, a0, a1
     return block_field(body, 0) && block_field(body, 1) && block_field(body, 2);
 }
-
-}  // namespace skyloop::inline world::rinex
-
-namespace skyloop::inline world {
-
-namespace rinex {
-namespace {
 
 class NavigationReading {
 public:
@@ -265,15 +245,9 @@ private:
     }
 
     void warn() {
-        const auto defects = [&](const DefectTally& t, std::string_view what) {
-            if (t.count == 0) return;
-            file_.warnings.push_back(
-                fmt::format("{}; {} skipped{}", t.first, what,
-                            t.count > 1 ? fmt::format(", and {} more likewise", t.count - 1) : ""));
-        };
-        defects(defective_, "record");
-        defects(incomplete_, "record");
-        defects(stray_, "line");
+        defective_.warn(file_.warnings, "record skipped");
+        incomplete_.warn(file_.warnings, "record skipped");
+        stray_.warn(file_.warnings, "line skipped");
         if (!file_.skipped.messages.empty())
             file_.warnings.push_back(fmt::format("{}: skipped messages of other kinds ({})", name_, messages()));
     }
@@ -310,9 +284,7 @@ Result<NavigationFile> read_navigation(std::string_view text, std::string_view n
 }
 
 Result<NavigationFile> read_navigation_file(const std::filesystem::path& path) {
-    const Result<std::string> text = read_text_file(path);
-    if (!text) return fail(text.error());
-    return read_navigation(*text, path.string());
+    return read_text_with(path, read_navigation);
 }
 
 }  // namespace skyloop::inline world

@@ -12,9 +12,38 @@ namespace {
 
 constexpr std::size_t field_width = 19;
 
-}  // namespace
+// Where a number stands in a record, what it is called and what a satellite can broadcast.
+struct FieldRule {
+    std::size_t line = 0, column = 0;  // column 0 … 3; of the first line 1 … 3, after the epoch
+    std::string_view name;
+    double least = 0, most = 0;
+    bool required = false;  // blank is not 0
+};
 
-RecordFields::RecordFields(std::span<const Line> lines, int major) : lines_(lines), major_(major) {}
+// Takes numbers from the lines of a record and remembers the first defect; what comes after one is 0.
+class RecordFields {
+public:
+    RecordFields(std::span<const Line> lines, int major) : lines_(lines), major_(major) {}
+
+    double number(const FieldRule& rule);
+    int whole(const FieldRule& rule);
+    // The calendar epoch of the first line, in whatever time scale it is written, read as if it were GPST.
+    GpsTime epoch();
+    [[nodiscard]] bool blank(std::size_t line, std::size_t column) const;
+    [[nodiscard]] std::size_t line_count() const { return lines_.size(); }
+
+    // Notes that the field at `line`, `column` cannot be.
+    void refuse(std::size_t line, std::size_t column, std::string found, std::string expected);
+    [[nodiscard]] const std::optional<Defect>& defect() const { return defect_; }
+
+private:
+    [[nodiscard]] std::size_t text_column(std::size_t line, std::size_t column) const;
+    [[nodiscard]] std::string_view field(std::size_t line, std::size_t column) const;
+
+    std::span<const Line> lines_;
+    int major_;
+    std::optional<Defect> defect_;
+};
 
 std::size_t RecordFields::text_column(std::size_t line, std::size_t column) const {
     if (line == 0) return (major_ == 2 ? 22 : 23) + field_width * (column - 1);
@@ -63,8 +92,6 @@ void RecordFields::refuse(std::size_t line, std::size_t column, std::string foun
     defect_ = Defect{at, static_cast<int>(text_column(line, column)) + 1, std::move(found), std::move(expected)};
 }
 
-namespace {
-
 // A number of the orbit or the clock. The limits are some ten times those that the bits of the messages allow
 // (IS-GPS-200, tables 20-I and 20-III); angles may be written 0 … 2π.
 struct KeplerField {
@@ -106,6 +133,7 @@ NavigationMessage galileo_message(int sources) {
     return fnav ? NavigationMessage::fnav : NavigationMessage::inav;
 }
 
+// Eight lines (RINEX 3.05, tables A6, A8, A12, A14, A18).
 class KeplerReading {
 public:
     KeplerReading(const RecordKind& kind, RecordFields fields) : kind_(kind), fields_(std::move(fields)) {
@@ -186,14 +214,6 @@ private:
     KeplerEphemeris eph_;
 };
 
-}  // namespace
-
-tl::expected<KeplerEphemeris, Defect> read_kepler_record(const RecordKind& kind, RecordFields fields) {
-    return KeplerReading(kind, std::move(fields)).read();
-}
-
-namespace {
-
 constexpr std::array<std::string_view, 3> axis_names{"X", "Y", "Z"};
 
 // Position, velocity and acceleration, one axis a line, in kilometres.
@@ -216,14 +236,7 @@ void check_radius(RecordFields& fields, const std::array<double, 3>& position, d
                       fmt::format("{} to {} km", least_km, most_km));
 }
 
-// F_T of GLONASS in metres (ICD L1, L2 GLONASS 5.1, table 4.4); 15 is no value.
-double glonass_accuracy(int index) {
-    constexpr std::array<double, 15> metres{1, 2, 2.5, 4, 5, 7, 10, 12, 14, 16, 32, 64, 128, 256, 512};
-    return index >= 0 && index < static_cast<int>(metres.size()) ? metres[static_cast<std::size_t>(index)] : 0;
-}
-
-}  // namespace
-
+// Four lines, or the five of version 3.05 and later (RINEX 3.05, table A10).
 tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kind, RecordFields fields) {
     GlonassEphemeris eph;
     eph.satellite = kind.satellite;
@@ -240,7 +253,9 @@ tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kin
         // 999999999999e-3 and the like stand for an unknown delay.
         const double delay = fields.number({4, 1, "the delay of L2", -1e12, 1e12, false});
         if (std::abs(delay) < 1e-6) eph.group_delay_l2 = delay;
-        eph.accuracy_m = glonass_accuracy(fields.whole({4, 2, "the accuracy index", -1e9, 1e9, false}));
+        const int index = fields.whole({4, 2, "the accuracy index", -1e9, 1e9, false});
+        if (index >= 0 && index < static_cast<int>(glonass_accuracies_m.size()))
+            eph.accuracy_m = glonass_accuracies_m[static_cast<std::size_t>(index)];
     }
     const GpsTime utc = fields.epoch();
     if (fields.defect()) return tl::make_unexpected(*fields.defect());
@@ -251,6 +266,7 @@ tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kin
     return eph;
 }
 
+// Four lines (RINEX 3.05, table A16).
 tl::expected<SbasEphemeris, Defect> read_sbas_record(const RecordKind& kind, RecordFields fields) {
     SbasEphemeris eph;
     eph.satellite = kind.satellite;
@@ -265,6 +281,8 @@ tl::expected<SbasEphemeris, Defect> read_sbas_record(const RecordKind& kind, Rec
     if (fields.defect()) return tl::make_unexpected(*fields.defect());
     return eph;
 }
+
+}  // namespace
 
 bool begins_record(std::string_view line, int major) { return !is_blank(columns(line, 0, major == 2 ? 2 : 1)); }
 
@@ -283,7 +301,7 @@ tl::expected<Ephemeris, Defect> read_record(const RecordKind& kind, std::span<co
         case Constellation::sbas:
             return read_sbas_record(kind, std::move(fields));
         default:
-            return read_kepler_record(kind, std::move(fields));
+            return KeplerReading(kind, std::move(fields)).read();
     }
 }
 

@@ -33,8 +33,9 @@ void add_codes_of_version_2(std::vector<CodeColumns>& codes, std::span<const std
     if (signal == Signal::b1i) add_band('1');
 }
 
-}  // namespace
-
+// The signals of a system that can be found among its observation types, in the order of Signal.
+// @param types "C1C", "L1C", … in the order of the fields; of version 2 "C1", "P2", …
+// @param version of RINEX: 3.02 calls B1I "1I" where all others call it "2I"
 std::vector<SignalColumns> signal_columns(Constellation system, std::span<const std::string> types, double version) {
     std::vector<SignalColumns> result;
     for (const Signal emulated : emulated_signals(system)) {
@@ -56,8 +57,6 @@ std::vector<SignalColumns> signal_columns(Constellation system, std::span<const 
               [](const SignalColumns& a, const SignalColumns& b) { return a.signal < b.signal; });
     return result;
 }
-
-namespace {
 
 constexpr std::string_view what_observations = "observations (RINEX 2.00-2.12, 3.00-3.05 or 4.00-4.02)";
 constexpr std::size_t most_warnings = 20;

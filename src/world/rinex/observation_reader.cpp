@@ -210,17 +210,12 @@ private:
     }
 
     void warn() {
-        const auto defects = [&](const DefectTally& t, std::string_view what) {
-            if (t.count == 0) return;
-            file().warnings.push_back(fmt::format(
-                "{}; {}{}", t.first, what, t.count > 1 ? fmt::format(", and {} more likewise", t.count - 1) : ""));
-        };
-        defects(epochs_, "epoch skipped");
-        defects(unordered_, "epoch skipped");
-        defects(incomplete_, "kept as it is");
-        defects(satellites_, "satellite skipped");
-        defects(fields_, "taken as not measured");
-        defects(stray_, "line skipped");
+        epochs_.warn(file().warnings, "epoch skipped");
+        unordered_.warn(file().warnings, "epoch skipped");
+        incomplete_.warn(file().warnings, "kept as it is");
+        satellites_.warn(file().warnings, "satellite skipped");
+        fields_.warn(file().warnings, "taken as not measured");
+        stray_.warn(file().warnings, "line skipped");
     }
 
     LineReader lines_;
@@ -251,9 +246,7 @@ Result<ObservationFile> read_observations(std::string_view text, std::string_vie
 }
 
 Result<ObservationFile> read_observation_file(const std::filesystem::path& path) {
-    const Result<std::string> text = read_text_file(path);
-    if (!text) return fail(text.error());
-    return read_observations(*text, path.string());
+    return read_text_with(path, read_observations);
 }
 
 }  // namespace skyloop::inline world

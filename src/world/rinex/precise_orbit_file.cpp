@@ -155,9 +155,7 @@ Result<PreciseOrbitFile> read_precise_orbits(std::string_view text, std::string_
 }
 
 Result<PreciseOrbitFile> read_precise_orbit_file(const std::filesystem::path& path) {
-    const Result<std::string> text = read_text_file(path);
-    if (!text) return fail(text.error());
-    return read_precise_orbits(*text, path.string());
+    return read_text_with(path, read_precise_orbits);
 }
 
 }  // namespace skyloop::inline world

@@ -1,4 +1,3 @@
-// Header lines of RINEX files that are written.
 #include "world/rinex/rinex_writer.hpp"
 
 #include <fmt/compile.h>
@@ -15,21 +14,30 @@
 #include "base/time/gps_time.hpp"
 #include "base/time/utc_time.hpp"
 
-namespace skyloop::inline world::rinex {
+namespace skyloop::inline world {
+namespace rinex {
+namespace {
 
-/// A header line: content in columns 1-60, label in 61-80, and its end.
-std::string header_line(std::string_view content, std::string_view label);
-
-/// The text in exactly `width` columns, cut or filled with spaces; what is not printable ASCII becomes '?'.
-std::string in_columns(std::string_view text, std::size_t width);
-
-/// PGM / RUN BY / DATE; the date is that of `time` in UTC, so that the same run gives the same bytes on any day.
-std::string program_line(std::string_view program, GpsTime time);
-
+// A header line: content in columns 1-60, label in 61-80, and its end.
 std::string header_line(std::string_view content, std::string_view label) {
     return fmt::format("{:<60}{:<20}\n", content, label);
 }
 
+// A list on as many lines as it needs, `most` items on each; lines that go on are indented by the width of `first`.
+std::string list_lines(const std::string& first, const std::vector<std::string>& items, std::size_t most,
+                       std::string_view label) {
+    std::string text, line = first;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (i > 0 && i % most == 0) {
+            text += header_line(line, label);
+            line.assign(first.size(), ' ');
+        }
+        line += items[i];
+    }
+    return text + header_line(line, label);
+}
+
+// The text in exactly `width` columns, cut or filled with spaces; what is not printable ASCII becomes '?'.
 std::string in_columns(std::string_view text, std::size_t width) {
     std::string result(width, ' ');
     for (std::size_t i = 0; i < width && i < text.size(); ++i)
@@ -37,6 +45,7 @@ std::string in_columns(std::string_view text, std::size_t width) {
     return result;
 }
 
+// PGM / RUN BY / DATE; the date is that of `time` in UTC, so that the same run gives the same bytes on any day.
 std::string program_line(std::string_view program, GpsTime time) {
     const UtcTime utc = to_utc(time, LeapSeconds::announced());
     return header_line(in_columns(program, 20) + std::string(20, ' ') +
@@ -44,13 +53,6 @@ std::string program_line(std::string_view program, GpsTime time) {
                                        utc.minute, utc.second),
                        "PGM / RUN BY / DATE");
 }
-
-}  // namespace skyloop::inline world::rinex
-
-namespace skyloop::inline world {
-
-namespace rinex {
-namespace {
 
 // D19.12 and D12.4: a three-digit exponent would overflow the field, so what is as small as that is 0.
 std::string d_format(double value, int width, int decimals) {
@@ -285,34 +287,19 @@ std::string ObservationWriter::system_lines() const {
         std::vector<std::string> types;
         for (const Signal signal : signals)
             for (const char kind : rinex::observed_kinds)
-                types.push_back(fmt::format("{}{}", kind, *rinex_signal_code(system, signal)));
-        std::string line = fmt::format("{}  {:3}", rinex_letter(system), types.size());
-        for (std::size_t i = 0; i < types.size(); ++i) {
-            if (i > 0 && i % most_types == 0) {
-                text += rinex::header_line(line, "SYS / # / OBS TYPES");
-                line = std::string(6, ' ');
-            }
-            line += " " + types[i];
-        }
-        text += rinex::header_line(line, "SYS / # / OBS TYPES");
+                types.push_back(fmt::format(" {}{}", kind, *rinex_signal_code(system, signal)));
+        text += rinex::list_lines(fmt::format("{}  {:3}", rinex_letter(system), types.size()), types, most_types,
+                                  "SYS / # / OBS TYPES");
     }
     return text;
 }
 
 std::string ObservationWriter::glonass_lines() const {
     constexpr std::size_t most_slots = 8;
-    std::string text;
-    std::string line = fmt::format("{:3}", header_.glonass_channels.size());
-    std::size_t count = 0;
-    for (const auto& [slot, channel] : header_.glonass_channels) {
-        if (count > 0 && count % most_slots == 0) {
-            text += rinex::header_line(line, "GLONASS SLOT / FRQ #");
-            line = std::string(3, ' ');
-        }
-        line += fmt::format(" R{:02} {:2}", slot, channel);
-        ++count;
-    }
-    return text + rinex::header_line(line, "GLONASS SLOT / FRQ #") +
+    std::vector<std::string> slots;
+    for (const auto& [slot, channel] : header_.glonass_channels)
+        slots.push_back(fmt::format(" R{:02} {:2}", slot, channel));
+    return rinex::list_lines(fmt::format("{:3}", slots.size()), slots, most_slots, "GLONASS SLOT / FRQ #") +
            rinex::header_line(" C1C    0.000 C1P    0.000 C2C    0.000 C2P    0.000", "GLONASS COD/PHS/BIS");
 }
 

@@ -14,9 +14,6 @@
 
 namespace skyloop::inline world::rinex {
 
-/// Years of epochs: those of GPS time which 64-bit nanoseconds hold whole, so that all that a run writes is read back.
-constexpr bool is_epoch_year(int year) { return year >= 1980 && year <= 2269; }
-
 /// A line without its end, and its number, from 1.
 struct Line {
     std::string_view text;
@@ -110,6 +107,8 @@ struct DefectTally {
     void add_with(Words words) {
         if (count++ == 0) first = words();
     }
+    /// Tells the first, what came of it, and how many more there are, if there are any.
+    void warn(std::vector<std::string>& warnings, std::string_view outcome) const;
 };
 
 }  // namespace skyloop::inline world::rinex

@@ -1,7 +1,4 @@
 /// One ephemeris in RINEX text.
-/// The fields of one record in RINEX text, taken one by one.
-/// A Kepler-type ephemeris of GPS, QZSS, Galileo, BeiDou or NavIC in RINEX text.
-/// State vectors of GLONASS and SBAS satellites in RINEX text.
 #pragma once
 
 #include <tl/expected.hpp>
@@ -24,39 +21,6 @@ struct Defect {
     int column = 0;  ///< from 1
     std::string found;
     std::string expected;
-};
-
-/// Where a number stands in a record, what it is called and what a satellite can broadcast.
-struct FieldRule {
-    std::size_t line = 0, column = 0;  ///< column 0 … 3; of the first line 1 … 3, after the epoch
-    std::string_view name;
-    double least = 0, most = 0;
-    bool required = false;  ///< blank is not 0
-};
-
-/// Takes numbers from the lines of a record and remembers the first defect; what comes after one is 0.
-class RecordFields {
-public:
-    RecordFields(std::span<const Line> lines, int major);
-
-    double number(const FieldRule& rule);
-    int whole(const FieldRule& rule);
-    /// The calendar epoch of the first line, in whatever time scale it is written, read as if it were GPST.
-    GpsTime epoch();
-    [[nodiscard]] bool blank(std::size_t line, std::size_t column) const;
-    [[nodiscard]] std::size_t line_count() const { return lines_.size(); }
-
-    /// Notes that the field at `line`, `column` cannot be.
-    void refuse(std::size_t line, std::size_t column, std::string found, std::string expected);
-    [[nodiscard]] const std::optional<Defect>& defect() const { return defect_; }
-
-private:
-    [[nodiscard]] std::size_t text_column(std::size_t line, std::size_t column) const;
-    [[nodiscard]] std::string_view field(std::size_t line, std::size_t column) const;
-
-    std::span<const Line> lines_;
-    int major_;
-    std::optional<Defect> defect_;
 };
 
 /// How many lines a record has: the epoch with the clock, then orbit lines of four fields.
@@ -87,14 +51,5 @@ std::optional<SatelliteId> record_satellite(std::string_view line, int major, Co
 
 /// Reads the lines of one record.
 tl::expected<Ephemeris, Defect> read_record(const RecordKind& kind, std::span<const Line> lines);
-
-/// Reads eight lines (RINEX 3.05, tables A6, A8, A12, A14, A18).
-tl::expected<KeplerEphemeris, Defect> read_kepler_record(const RecordKind& kind, RecordFields fields);
-
-/// Reads four lines, or the five of version 3.05 and later (RINEX 3.05, table A10).
-tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kind, RecordFields fields);
-
-/// Reads four lines (RINEX 3.05, table A16).
-tl::expected<SbasEphemeris, Defect> read_sbas_record(const RecordKind& kind, RecordFields fields);
 
 }  // namespace skyloop::inline world::rinex

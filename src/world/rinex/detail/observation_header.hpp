@@ -27,11 +27,6 @@ struct SignalColumns {
     std::vector<CodeColumns> codes;
 };
 
-/// The signals of a system that can be found among its observation types, in the order of Signal.
-/// @param types "C1C", "L1C", … in the order of the fields; of version 2 "C1", "P2", …
-/// @param version of RINEX: 3.02 calls B1I "1I" where all others call it "2I"
-std::vector<SignalColumns> signal_columns(Constellation system, std::span<const std::string> types, double version);
-
 /// What the records of one system look like.
 struct SystemLayout {
     std::vector<std::string> types;
