@@ -78,7 +78,7 @@ Metres SiteCorrections::ionosphere(Constellation constellation, const SkyDirecti
     if (parameters_.ionosphere == IonosphereCorrection::broadcast) {
         if (constellation == Constellation::galileo && heard.galileo) {
             const auto& a = *heard.galileo;
-            return ionosphere_group_delay(ntcm_g_content({a[0], a[1], a[2]}, place_, direction, ionosphere_time_).slant,
+            return ionosphere_group_delay(ntcm_g_content({a[0], a[1], a[2]}, place_, direction, ionosphere_time_),
                                           carrier);
         }
         if (constellation == Constellation::beidou && heard.beidou) {

@@ -80,14 +80,9 @@ KlobucharDelay klobuchar_delay(const KlobucharCoefficients& coefficients, const 
     double vertical_s = 5e-9;
     if (std::abs(x) < 1.57) vertical_s += amplitude * (1 - x * x / 2 + x * x * x * x / 24);
 
-    KlobucharDelay delay;
-    delay.slant_factor = 1 + 16 * std::pow(0.53 - elevation, 3);
-    delay.pierce_latitude = Angle::radians(latitude * pi);
-    delay.pierce_longitude = Angle::radians(std::remainder(longitude, 2.0) * pi);
-    delay.local_time = Seconds(local_time);
-    delay.vertical = Metres(speed_of_light * vertical_s);
-    delay.slant = delay.vertical * delay.slant_factor;
-    return delay;
+    const double slant_factor = 1 + 16 * std::pow(0.53 - elevation, 3);
+    const Metres vertical(speed_of_light * vertical_s);
+    return {vertical, vertical * slant_factor};
 }
 
 Metres ionosphere_delay_at(Metres delay_l1, Hertz carrier) {
@@ -227,7 +222,7 @@ private:
 }  // namespace
 
 AnnualPhase AnnualPhase::of(const UtcTime& utc) {
-    return of_modified_julian_date(static_cast<double>(modified_julian_day(utc)) + utc.seconds_of_day() / 86400);
+    return {static_cast<double>(modified_julian_day(utc)) + utc.seconds_of_day() / 86400 - 44266};
 }
 
 double AnnualPhase::cosine() const { return std::cos(days / 365.25 * 2 * std::numbers::pi); }
@@ -256,12 +251,6 @@ Vmf1Coefficients gmf_coefficients(const Geodetic& place, AnnualPhase phase) {
             field(&GmfGptTerm::wet_mean, &GmfGptTerm::wet_amplitude)};
 }
 
-TroposphereMapping gmf_mapping(const Geodetic& place, AnnualPhase phase, Angle elevation) {
-    TroposphereMapping mapping = vmf1_mapping(gmf_coefficients(place, phase), place.latitude, phase, elevation);
-    mapping.hydrostatic += niell_height_correction({place.height.above_ellipsoid}, elevation);
-    return mapping;
-}
-
 MappingCoefficients vmf1_hydrostatic(double a_hydrostatic, Angle latitude, AnnualPhase phase) {
     const bool south = latitude.rad() < 0;
     const double c11 = south ? 0.007 : 0.005, c10 = south ? 0.002 : 0.001;
@@ -270,10 +259,5 @@ MappingCoefficients vmf1_hydrostatic(double a_hydrostatic, Angle latitude, Annua
 }
 
 MappingCoefficients vmf1_wet(double a_wet) { return {a_wet, 0.00146, 0.04391}; }
-
-TroposphereMapping vmf1_mapping(const Vmf1Coefficients& a, Angle latitude, AnnualPhase phase, Angle elevation) {
-    return {marini(vmf1_hydrostatic(a.a_hydrostatic, latitude, phase), elevation),
-            marini(vmf1_wet(a.a_wet), elevation)};
-}
 
 }  // namespace skyloop::inline world

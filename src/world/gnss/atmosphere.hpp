@@ -14,14 +14,10 @@
 
 namespace skyloop::inline world {
 
-/// What the single-frequency ionosphere model says of one direction, with the values on the way.
+/// What the single-frequency ionosphere model says of one direction.
 struct KlobucharDelay {
-    double slant_factor = 1;  ///< slant over vertical delay, F
-    Angle pierce_latitude;    ///< where the ray crosses the model's shell
-    Angle pierce_longitude;   ///< −180 … 180°
-    Seconds local_time;       ///< at the pierce point, 0 … 86 400 s
-    Metres vertical;          ///< at L1, above the pierce point
-    Metres slant;             ///< at L1, along the ray
+    Metres vertical;  ///< at L1, above the pierce point
+    Metres slant;     ///< at L1, along the ray
 };
 
 /// The user algorithm of the broadcast ionosphere (IS-GPS-200, 20.3.3.5.2.5; Klobuchar 1987).
@@ -99,8 +95,6 @@ Metres saastamoinen_delay(Angle latitude, MslHeight height, Angle elevation, dou
 /// 2010, section 9.2). It runs on over the years.
 struct AnnualPhase {
     double days = 0;
-    /// @param mjd modified Julian date, UTC, with fraction
-    static AnnualPhase of_modified_julian_date(double mjd) { return {mjd - 44266}; }
     static AnnualPhase of(const UtcTime& utc);
     /// cos(2π days/365.25): 1 in the northern winter.
     [[nodiscard]] double cosine() const;
@@ -128,20 +122,15 @@ struct Vmf1Coefficients {
     double a_wet = 0;
 };
 
-/// a_h and a_w of the global mapping function, at sea level: what of it depends on place and season alone.
+/// a_h and a_w of the global mapping function, at sea level: what of it depends on place and season alone (Boehm,
+/// Niell, Tregoning and Schuh 2006; IERS Conventions 2010, GMF.F). Else it is VMF1, and niell_height_correction() to
+/// the hydrostatic part.
 Vmf1Coefficients gmf_coefficients(const Geodetic& place, AnnualPhase phase);
 
-/// Global mapping function (Boehm, Niell, Tregoning and Schuh 2006; IERS Conventions 2010, GMF.F), Niell's height
-/// correction included.
-TroposphereMapping gmf_mapping(const Geodetic& place, AnnualPhase phase, Angle elevation);
-
-/// Hydrostatic coefficients of VMF1 with a given a (Boehm, Werl and Schuh 2006; MODELS.md 7.3).
+/// Hydrostatic coefficients of VMF1 with a given a (Boehm, Werl and Schuh 2006; MODELS.md 7.3), at the height of the
+/// place (VMF1.F). For those of a grid at sea level add niell_height_correction() to the mapping (VMF1_HT.F).
 MappingCoefficients vmf1_hydrostatic(double a_hydrostatic, Angle latitude, AnnualPhase phase);
 /// Wet coefficients of VMF1 with a given a.
 MappingCoefficients vmf1_wet(double a_wet);
-
-/// Vienna mapping function 1 with coefficients given at the height of the place (VMF1.F). For coefficients on a grid at
-/// sea level, add niell_height_correction() to the hydrostatic part (VMF1_HT.F).
-TroposphereMapping vmf1_mapping(const Vmf1Coefficients& a, Angle latitude, AnnualPhase phase, Angle elevation);
 
 }  // namespace skyloop::inline world

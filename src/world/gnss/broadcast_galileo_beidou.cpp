@@ -1,15 +1,10 @@
 #include "world/gnss/broadcast_galileo_beidou.hpp"
 
 #include "detail/broadcast_fields.hpp"
+#include "world/gnss/broadcast_lnav.hpp"
 
 namespace skyloop::inline world {
 namespace {
-
-using broadcast::power_of_two;
-using broadcast::put_circle;
-using broadcast::put_scaled;
-using broadcast::put_scaled_unsigned;
-using broadcast::put_semicircles;
 
 constexpr std::chrono::seconds pair_length{2};
 constexpr double gst_time_step_s = 60;  // of toe and toc
@@ -17,15 +12,6 @@ constexpr std::size_t word_bits = 128, even_data_bits = 112;
 
 double gst_tow(GpsTime time) { return gst_week_and_tow(time).tow_seconds(); }
 std::uint64_t gst_week(GpsTime time) { return static_cast<std::uint64_t>(gst_week_and_tow(time).week); }
-
-// SISA (table 82): steps of 1, 2, 4 and 16 cm; 255 is "no prediction".
-std::uint64_t sisa_index(double metres) {
-    if (!(metres >= 0 && metres <= 6)) return 255;
-    if (metres < 0.5) return static_cast<std::uint64_t>(std::lround(metres / 0.01));
-    if (metres < 1) return 50 + static_cast<std::uint64_t>(std::lround((metres - 0.5) / 0.02));
-    if (metres < 2) return 75 + static_cast<std::uint64_t>(std::lround((metres - 1) / 0.04));
-    return 100 + static_cast<std::uint64_t>(std::lround((metres - 2) / 0.16));
-}
 
 // Bits of the health as records keep it (RINEX 3.05, table A8).
 std::uint64_t health_bits(const KeplerEphemeris& r, int first, std::uint64_t mask) {
@@ -64,7 +50,7 @@ struct InavFields {
         put_scaled(bits, r.cus, 16, power_of_two(-29));
         put_scaled(bits, r.crc, 16, power_of_two(-5));
         put_scaled(bits, r.crs, 16, power_of_two(-5));
-        bits.put(sisa_index(r.accuracy_m), 8);
+        bits.put_signed(inav_accuracy_index(r.accuracy_m), 8);
     }
     void fourth() {
         const KeplerEphemeris& r = data.record;
@@ -93,7 +79,7 @@ struct InavFields {
         time();
     }
     void sixth() {
-        const broadcast::LeapChange change = broadcast::leap_change(data.leap_seconds, start);
+        const LeapChange change = leap_change(data.leap_seconds, start);
         constexpr double hour = 3600;
         bits.put(0, 32 + 24);  // Galileo's time is UTC but for whole seconds
         bits.put_signed(data.leap_seconds.offset(start), 8);
@@ -158,7 +144,14 @@ std::optional<int> inav_word_ending(Signal signal, GpsTime end) {
     return e5b ? of_e5b[place] : of_e1[place];
 }
 
-int inav_accuracy_index(double metres) { return static_cast<int>(sisa_index(metres)); }
+int inav_accuracy_index(double metres) {
+    // Steps of 1, 2, 4 and 16 cm.
+    if (!(metres >= 0 && metres <= 6)) return 255;
+    if (metres < 0.5) return static_cast<int>(std::lround(metres / 0.01));
+    if (metres < 1) return 50 + static_cast<int>(std::lround((metres - 0.5) / 0.02));
+    if (metres < 2) return 75 + static_cast<int>(std::lround((metres - 1) / 0.04));
+    return 100 + static_cast<int>(std::lround((metres - 2) / 0.16));
+}
 
 InavWords inav_pages(const InavData& data, int word, GpsTime end) {
     InavFields fields{data, end - pair_length};
@@ -192,12 +185,6 @@ InavWords inav_pages(const InavData& data, int word, GpsTime end) {
 
 namespace {
 
-using broadcast::power_of_two;
-using broadcast::put_circle;
-using broadcast::put_scaled;
-using broadcast::put_scaled_unsigned;
-using broadcast::put_semicircles;
-
 constexpr double d1_time_step_s = 8;  // of toc and toe
 constexpr int toe_bits = 17, toe_bits_before = 2;
 
@@ -221,16 +208,12 @@ void put_d1_clock(BitWriter& bits, const KeplerEphemeris& r, const KlobucharCoef
     constexpr double delay_step = 1e-10;
     bits.put(r.health_bits_clear() ? 0 : 1, 1);
     bits.put_signed(r.iodc, 5);
-    bits.put_signed(broadcast::accuracy_index(r.accuracy_m), 4);
+    bits.put_signed(lnav_accuracy_index(r.accuracy_m), 4);
     bits.put_signed(bdt_week_and_tow(end - std::chrono::seconds(6)).week, 13);
     put_scaled_unsigned(bits, bdt_tow(r.toc), 17, d1_time_step_s);
     put_scaled(bits, r.tgd, 10, delay_step);
     put_scaled(bits, r.tgd2, 10, delay_step);
-    constexpr std::array<int, 4> alpha{-30, -27, -24, -24}, beta{11, 14, 16, 16};
-    for (std::size_t i = 0; i < 4; ++i)
-        put_scaled(bits, c.alpha[i], 8, power_of_two(alpha[i]));
-    for (std::size_t i = 0; i < 4; ++i)
-        put_scaled(bits, c.beta[i], 8, power_of_two(beta[i]));
+    put_klobuchar(bits, c);
     put_scaled(bits, r.af2, 11, power_of_two(-66));
     put_scaled(bits, r.af0, 24, power_of_two(-33));
     put_scaled(bits, r.af1, 22, power_of_two(-50));

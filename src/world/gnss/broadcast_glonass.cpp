@@ -7,9 +7,6 @@
 namespace skyloop::inline world {
 namespace {
 
-using broadcast::power_of_two;
-using broadcast::put_sign_magnitude;
-
 constexpr std::int64_t string_s = 2, frame_s = 30, superframe_s = 150, moscow_s = 3 * 3600;
 constexpr int string_bits = 85, check_bits = 8;
 
@@ -40,10 +37,9 @@ void put_axis(BitWriter& bits, const GlonassEphemeris& r, std::size_t axis) {
 }
 
 std::uint64_t accuracy_factor(double metres) {
-    constexpr std::array<double, 15> bounds{1, 2, 2.5, 4, 5, 7, 10, 12, 14, 16, 32, 64, 128, 256, 512};
-    for (std::size_t i = 0; i < bounds.size(); ++i)
-        if (metres <= bounds[i]) return i;
-    return bounds.size();
+    for (std::size_t i = 0; i < glonass_accuracies_m.size(); ++i)
+        if (metres <= glonass_accuracies_m[i]) return i;
+    return glonass_accuracies_m.size();
 }
 
 // The bits 80 to 9 of a string, made from a record as it is told at one instant.

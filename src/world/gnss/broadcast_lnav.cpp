@@ -8,7 +8,7 @@
 
 namespace skyloop::inline world {
 
-int broadcast::accuracy_index(double metres) {
+int lnav_accuracy_index(double metres) {
     constexpr std::array<double, 15> bounds{2.4, 3.4, 4.85, 6.85, 9.65, 13.65, 24,  48,
                                             96,  192, 384,  768,  1536, 3072,  6144};
     for (std::size_t i = 0; i < bounds.size(); ++i)
@@ -16,7 +16,15 @@ int broadcast::accuracy_index(double metres) {
     return 15;
 }
 
-broadcast::LeapChange broadcast::leap_change(const LeapSeconds& leap_seconds, GpsTime time) {
+void put_klobuchar(BitWriter& bits, const KlobucharCoefficients& coefficients) {
+    constexpr std::array<int, 4> alpha_exponents{-30, -27, -24, -24}, beta_exponents{11, 14, 16, 16};
+    for (std::size_t i = 0; i < 4; ++i)
+        put_scaled(bits, coefficients.alpha[i], 8, power_of_two(alpha_exponents[i]));
+    for (std::size_t i = 0; i < 4; ++i)
+        put_scaled(bits, coefficients.beta[i], 8, power_of_two(beta_exponents[i]));
+}
+
+LeapChange leap_change(const LeapSeconds& leap_seconds, GpsTime time) {
     const LeapSeconds::Step* chosen = nullptr;
     for (const LeapSeconds::Step& step : leap_seconds.steps()) {
         // One that is to come is announced half a year before.
@@ -30,12 +38,6 @@ broadcast::LeapChange broadcast::leap_change(const LeapSeconds& leap_seconds, Gp
 }
 
 namespace {
-
-using broadcast::power_of_two;
-using broadcast::put_circle;
-using broadcast::put_scaled;
-using broadcast::put_scaled_unsigned;
-using broadcast::put_semicircles;
 
 constexpr int data_bits = 24;
 constexpr std::uint32_t preamble = 0x8B;
@@ -86,7 +88,7 @@ BitWriter clock_fields(const KeplerEphemeris& r, GpsTime end) {
     BitWriter bits;
     bits.put(week_bits(end - std::chrono::seconds(6)), 10);
     bits.put(code_on_l2, 2);
-    bits.put_signed(broadcast::accuracy_index(r.accuracy_m), 4);
+    bits.put_signed(lnav_accuracy_index(r.accuracy_m), 4);
     bits.put_signed(r.health, 6);
     bits.put(issue >> 8, 2);
     bits.put(no_data_on_p, 1);
@@ -159,8 +161,6 @@ LnavWords lnav_words(const LnavData& data) {
     }
     return words;
 }
-
-int lnav_accuracy_index(double metres) { return broadcast::accuracy_index(metres); }
 
 LnavWords lnav_ephemeris_subframe(const KeplerEphemeris& record, int subframe, GpsTime end) {
     const BitWriter fields = subframe == 1   ? clock_fields(record, end)
@@ -283,14 +283,10 @@ BitWriter ionosphere_page(const LnavPage& page) {
         const BroadcastIonosphere& known = page.system.source->ionosphere();
         c = (page.of_qzss() ? known.qzss : known.gps).value_or(c);
     }
-    const broadcast::LeapChange change = broadcast::leap_change(page.system.leap_seconds, page.time);
+    const LeapChange change = leap_change(page.system.leap_seconds, page.time);
     BitWriter bits;
     page.put_head(bits, 56);
-    constexpr std::array<int, 4> alpha_exponents{-30, -27, -24, -24}, beta_exponents{11, 14, 16, 16};
-    for (std::size_t i = 0; i < 4; ++i)
-        put_scaled(bits, c.alpha[i], 8, power_of_two(alpha_exponents[i]));
-    for (std::size_t i = 0; i < 4; ++i)
-        put_scaled(bits, c.beta[i], 8, power_of_two(beta_exponents[i]));
+    put_klobuchar(bits, c);
     bits.put(0, 24);  // A1: GPS time is UTC but for whole seconds
     bits.put(0, 32);  // A0
     put_scaled_unsigned(bits, tow_of(page.reference()), 8, almanac_step_s);

@@ -27,7 +27,8 @@ LnavWords lnav_words(const LnavData& data);
 /// @param end when the subframe ends, which is what its hand-over word tells
 LnavWords lnav_ephemeris_subframe(const KeplerEphemeris& record, int subframe, GpsTime end);
 
-/// URA as these subframes tell it, 0 … 15 (IS-GPS-200, 20.3.3.3.1.3); of BeiDou URAI.
+/// URA as these subframes tell it, 0 … 15, by its upper bounds (IS-GPS-200, 20.3.3.3.1.3); of BeiDou, which has taken
+/// them over, URAI (B1I ICD 3.0, 5.2.4.5).
 int lnav_accuracy_index(double metres);
 
 /// What pages of subframes 4 and 5 tell of the whole system.

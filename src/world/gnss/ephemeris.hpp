@@ -90,6 +90,9 @@ struct GlonassEphemeris {
     [[nodiscard]] bool healthy() const { return health == 0; }
 };
 
+/// Accuracies by F_T of GLONASS, m (ICD L1, L2 GLONASS 5.1, table 4.4); 15 is no value.
+inline constexpr std::array<double, 15> glonass_accuracies_m{1, 2, 2.5, 4, 5, 7, 10, 12, 14, 16, 32, 64, 128, 256, 512};
+
 /// Position, velocity and acceleration of an SBAS satellite (DO-229, message 9), in ECEF. Metres and seconds.
 struct SbasEphemeris {
     SatelliteId satellite;

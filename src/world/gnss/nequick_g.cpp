@@ -98,15 +98,9 @@ Angle modified_dip_latitude(const ModipGrid& grid, Angle latitude, Angle longitu
 
 Result<NequickTables> read_nequick_tables(const std::filesystem::path& folder, int month) {
     if (month < 1 || month > 12) return fail(ErrorCode::usage, fmt::format("found month {}; expected 1 to 12", month));
-    const std::filesystem::path modip_path = folder / "modipNeQG_wrapped.asc";
-    const auto modip_text = read_text_file(modip_path);
-    if (!modip_text) return fail(modip_text.error());
-    auto modip = read_modip_grid(*modip_text, modip_path.string());
+    const auto modip = read_text_with(folder / "modipNeQG_wrapped.asc", read_modip_grid);
     if (!modip) return fail(modip.error());
-    const std::filesystem::path ccir_path = folder / fmt::format("ccir{}.asc", month + 10);
-    const auto ccir_text = read_text_file(ccir_path);
-    if (!ccir_text) return fail(ccir_text.error());
-    auto ccir = read_ccir_month(*ccir_text, ccir_path.string());
+    const auto ccir = read_text_with(folder / fmt::format("ccir{}.asc", month + 10), read_ccir_month);
     if (!ccir) return fail(ccir.error());
     return NequickTables{month, *modip, *ccir};
 }

@@ -180,37 +180,34 @@ double ntcm_crests(double magnetic_latitude_deg) {
     return 1 + 1.14023 * std::exp(-north * north / 2) + 1.20556 * std::exp(-south * south / 2);
 }
 
+// The number that stands for the Sun's activity, Azpar, solar flux units (MODELS.md A.5); where none is given as in
+// NeQuick-G.
+double ntcm_ionisation(const EffectiveIonisation& b) {
+    if (!b.given()) return default_ionisation_level;
+    return std::sqrt(b.a0 * b.a0 + 1633.33 * b.a1 * b.a1 + 4802000 * b.a2 * b.a2 + 3266.67 * b.a0 * b.a2);
+}
+
+Tecu ntcm_vertical_content(const EffectiveIonisation& broadcast, const PiercePoint& where, const IonosphereTime& when) {
+    const double latitude = where.latitude.rad(), longitude = where.longitude.rad();
+    const double magnetic = ntcm_magnetic_latitude(latitude, longitude);
+    const double f3 = 1 - 0.38439 * std::cos(magnetic);
+    const double f5 = 1.41808 + 0.13985 * ntcm_ionisation(broadcast);
+    return Tecu(ntcm_daily(latitude, longitude, when) * ntcm_seasonal(when.day_of_year) * f3 *
+                ntcm_crests(Angle::radians(magnetic).deg()) * f5);
+}
+
 }  // namespace
 
 IonosphereTime IonosphereTime::of(const UtcTime& utc) {
     return {std::floor(skyloop::day_of_year(utc)), utc.seconds_of_day() / 3600};
 }
 
-double ntcm_g_ionisation(const EffectiveIonisation& b) {
-    if (!b.given()) return default_ionisation_level;
-    return std::sqrt(b.a0 * b.a0 + 1633.33 * b.a1 * b.a1 + 4802000 * b.a2 * b.a2 + 3266.67 * b.a0 * b.a2);
-}
-
-Tecu ntcm_g_vertical_content(const EffectiveIonisation& broadcast, const PiercePoint& where,
-                             const IonosphereTime& when) {
-    const double latitude = where.latitude.rad(), longitude = where.longitude.rad();
-    const double magnetic = ntcm_magnetic_latitude(latitude, longitude);
-    const double f3 = 1 - 0.38439 * std::cos(magnetic);
-    const double f5 = 1.41808 + 0.13985 * ntcm_g_ionisation(broadcast);
-    return Tecu(ntcm_daily(latitude, longitude, when) * ntcm_seasonal(when.day_of_year) * f3 *
-                ntcm_crests(Angle::radians(magnetic).deg()) * f5);
-}
-
-NtcmGContent ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic& place, const SkyDirection& direction,
-                            const IonosphereTime& when) {
+Tecu ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic& place, const SkyDirection& direction,
+                    const IonosphereTime& when) {
     const ThinShell shell;
-    NtcmGContent content;
     // The model leaves the height of the antenna out.
-    content.pierce = published_pierce_point(shell, {place.latitude, place.longitude, {}}, direction);
-    content.vertical = ntcm_g_vertical_content(broadcast, content.pierce, when);
-    content.slant_factor = modified_single_layer_mapping(shell, direction.elevation);
-    content.slant = content.vertical * content.slant_factor;
-    return content;
+    const PiercePoint pierce = published_pierce_point(shell, {place.latitude, place.longitude, {}}, direction);
+    return ntcm_vertical_content(broadcast, pierce, when) * modified_single_layer_mapping(shell, direction.elevation);
 }
 
 }  // namespace skyloop::inline world

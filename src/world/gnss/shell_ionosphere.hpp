@@ -108,25 +108,9 @@ struct IonosphereTime {
     static IonosphereTime of(const UtcTime& utc);
 };
 
-/// The number that stands for the Sun's activity in NTCM-G, Azpar, solar flux units (MODELS.md A.5);
-/// default_ionisation_level where none is given, as in NeQuick-G.
-double ntcm_g_ionisation(const EffectiveIonisation& broadcast);
-
-/// Vertical electron content above a pierce point (European Commission, NTCM G Ionospheric Model Description,
-/// MODELS.md A.5).
-Tecu ntcm_g_vertical_content(const EffectiveIonisation& broadcast, const PiercePoint& where,
-                             const IonosphereTime& when);
-
-/// What NTCM-G says of one direction, with the values on the way.
-struct NtcmGContent {
-    PiercePoint pierce;
-    Tecu vertical;
-    double slant_factor = 1;
-    Tecu slant;
-};
-
-/// The slant electron content towards a satellite; delay by ionosphere_group_delay(). For elevations above 0°.
-NtcmGContent ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic& place, const SkyDirection& direction,
-                            const IonosphereTime& when);
+/// The slant electron content towards a satellite by NTCM-G (European Commission, NTCM G Ionospheric Model Description,
+/// MODELS.md A.5); delay by ionosphere_group_delay(). For elevations above 0°.
+Tecu ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic& place, const SkyDirection& direction,
+                    const IonosphereTime& when);
 
 }  // namespace skyloop::inline world

@@ -55,7 +55,7 @@ public:
             when_ = IonosphereTime::of(to_utc(time_, leap_seconds_));
         }
         const SkyDirection direction{satellite.azimuth, above_horizon(satellite.elevation)};
-        return ionosphere_group_delay(ntcm_g_content(ionisation_, truth.geodetic, direction, when_).slant, carrier);
+        return ionosphere_group_delay(ntcm_g_content(ionisation_, truth.geodetic, direction, when_), carrier);
     }
 
 private:

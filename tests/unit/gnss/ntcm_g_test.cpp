@@ -19,12 +19,9 @@ TEST(NtcmG, EveryOracleRow) {
             Geodetic::degrees(row.number("sat_lat_deg"), row.number("sat_lon_deg"), row.number("sat_h_m"));
         const LookAngles look = LocalFrame(place).look_angles(to_ecef(satellite));
         EXPECT_NEAR(look.elevation.deg(), row.number("el_deg"), 1e-6);
-        const NtcmGContent content =
-            ntcm_g_content({row.number("ai0"), row.number("ai1"), row.number("ai2")}, place,
-                           {look.azimuth, look.elevation}, {row.number("doy"), row.number("ut_h")});
-        EXPECT_NEAR(content.vertical.value(), row.number("vtec_tecu"), row.number("tol_tecu"));
-        EXPECT_NEAR(content.slant_factor, row.number("mapping"), 1e-7);
-        EXPECT_NEAR(content.slant.value(), row.number("stec_tecu"), row.number("tol_tecu"));
+        const Tecu content = ntcm_g_content({row.number("ai0"), row.number("ai1"), row.number("ai2")}, place,
+                                            {look.azimuth, look.elevation}, {row.number("doy"), row.number("ut_h")});
+        EXPECT_NEAR(content.value(), row.number("stec_tecu"), row.number("tol_tecu"));
     }
 }
 
@@ -39,9 +36,9 @@ TEST(NtcmG, TakesLongitudesBeyondThePoleAsPublished) {
     for (const Row& row : {Row{4, 140.68, 35.85, 19953735.00, 54.6962}, Row{12, 81.09, 35.20, 20278071.03, 65.0500}}) {
         const LookAngles look =
             LocalFrame(place).look_angles(to_ecef(Geodetic::degrees(row.latitude, row.longitude, row.height)));
-        const NtcmGContent content = ntcm_g_content({236.831641, -0.39362878, 0.00402826613}, place,
-                                                    {look.azimuth, look.elevation}, {105, row.hours});
-        EXPECT_NEAR(content.slant.value(), row.slant, 0.001) << row.hours;
+        const Tecu content = ntcm_g_content({236.831641, -0.39362878, 0.00402826613}, place,
+                                            {look.azimuth, look.elevation}, {105, row.hours});
+        EXPECT_NEAR(content.value(), row.slant, 0.001) << row.hours;
     }
 }
 
@@ -52,19 +49,15 @@ TEST(NtcmG, CountsTheDayFromItsCalendar) {
     EXPECT_DOUBLE_EQ(IonosphereTime::of(utc).hours, 6.5);
 }
 
-TEST(NtcmG, TakesNeQuicksLevelWhereNoneIsBroadcast) {
-    EXPECT_EQ(ntcm_g_ionisation({}), 63.7);
-    EXPECT_DOUBLE_EQ(ntcm_g_ionisation({80, 0, 0}), 80);
-    const PiercePoint where{Angle::degrees(46), Angle::degrees(30)};
-    const IonosphereTime noon{100, 10};
-    EXPECT_EQ(ntcm_g_vertical_content({}, where, noon), ntcm_g_vertical_content({63.7, 0, 0}, where, noon));
+// In the zenith.
+Tecu content_at_noon(const EffectiveIonisation& broadcast) {
+    return ntcm_g_content(broadcast, Geodetic::degrees(46, 30, 0), {Angle::degrees(0), Angle::degrees(90)}, {100, 10});
 }
 
+TEST(NtcmG, TakesNeQuicksLevelWhereNoneIsBroadcast) { EXPECT_EQ(content_at_noon({}), content_at_noon({63.7, 0, 0})); }
+
 TEST(NtcmG, GrowsWithTheSun) {
-    const PiercePoint where{Angle::degrees(46), Angle::degrees(30)};
-    const IonosphereTime noon{100, 10};
-    EXPECT_GT(ntcm_g_vertical_content({190, 0, 0}, where, noon).value(),
-              2 * ntcm_g_vertical_content({64, 0, 0}, where, noon).value());
+    EXPECT_GT(content_at_noon({190, 0, 0}).value(), 2 * content_at_noon({64, 0, 0}).value());
 }
 
 }  // namespace

@@ -51,9 +51,14 @@ TEST(TroposphereDelay, MapsEachPartByTheModelThatItNames) {
         const MappingSite site{place.latitude, height, day_of_year(utc_noon())};
         expect(TroposphereMappingModel::niell, degrees,
                {niell_hydrostatic_mapping(site, elevation), niell_wet_mapping(place.latitude, elevation)});
-        expect(TroposphereMappingModel::gmf, degrees, gmf_mapping(place, phase, elevation));
-        expect(TroposphereMappingModel::vmf1, degrees,
-               vmf1_mapping(TroposphereParameters{}.vmf1, place.latitude, phase, elevation));
+        const auto vienna = [&](const Vmf1Coefficients& a, double height_correction) {
+            const auto hydrostatic = vmf1_hydrostatic(a.a_hydrostatic, place.latitude, phase);
+            return TroposphereMapping{marini(hydrostatic, elevation) + height_correction,
+                                      marini(vmf1_wet(a.a_wet), elevation)};
+        };
+        expect(TroposphereMappingModel::gmf, degrees,
+               vienna(gmf_coefficients(place, phase), niell_height_correction(height, elevation)));
+        expect(TroposphereMappingModel::vmf1, degrees, vienna(TroposphereParameters{}.vmf1, 0));
     }
 }
 

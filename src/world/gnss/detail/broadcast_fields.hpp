@@ -7,8 +7,9 @@
 
 #include "base/core/bytes.hpp"
 #include "base/time/utc_time.hpp"
+#include "world/gnss/ephemeris.hpp"
 
-namespace skyloop::inline world::broadcast {
+namespace skyloop::inline world {
 
 /// 2^exponent, the step of a field.
 inline double power_of_two(int exponent) { return std::ldexp(1.0, exponent); }
@@ -47,8 +48,9 @@ inline void put_semicircles(BitWriter& bits, double radians, int width, int expo
     put_scaled(bits, radians, width, std::numbers::pi * power_of_two(exponent));
 }
 
-/// URA and URAI by the upper bounds of IS-GPS-200, 20.3.3.3.1.3, which BeiDou has taken over (B1I ICD 3.0, 5.2.4.5).
-int accuracy_index(double metres);
+/// The coefficients alpha, then beta, in the eight fields that BeiDou has taken over from GPS (IS-GPS-200, table 20-X;
+/// B1I ICD 3.0, table 5-9).
+void put_klobuchar(BitWriter& bits, const KlobucharCoefficients& coefficients);
 
 /// The last or next change of the leap seconds, as GPS (IS-GPS-200, 20.3.3.5.2.4) and Galileo (OS SIS ICD 2.0, 5.1.7)
 /// announce it.
@@ -59,4 +61,4 @@ struct LeapChange {
 };
 LeapChange leap_change(const LeapSeconds& leap_seconds, GpsTime time);
 
-}  // namespace skyloop::inline world::broadcast
+}  // namespace skyloop::inline world
