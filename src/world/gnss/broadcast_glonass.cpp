@@ -134,22 +134,10 @@ GlonassWords glonass_string(const GlonassEphemeris& record, int string, GpsTime 
     BitWriter bits;
     bits.put(0, 1);
     bits.put_signed(string, 4);
-    switch (string) {
-        case 1:
-            fields.first(bits);
-            break;
-        case 2:
-            fields.second(bits);
-            break;
-        case 3:
-            fields.third(bits);
-            break;
-        case 4:
-            fields.fourth(bits);
-            break;
-        default:
-            fields.fifth(bits);
-    }
+    using Part = void (StringFields::*)(BitWriter&) const;
+    constexpr std::array<Part, 5> parts{&StringFields::first, &StringFields::second, &StringFields::third,
+                                        &StringFields::fourth, &StringFields::fifth};
+    (fields.*parts.at(static_cast<std::size_t>(string - 1)))(bits);
     bits.put(hamming(bits), check_bits);
     const std::int64_t of_week = sent % seconds_per_week;
     const auto superframe = static_cast<std::uint32_t>(of_week / superframe_s) + 1;
