@@ -2,7 +2,7 @@
 ///
 /// The fields are the members of the struct, in their order: numbers (little-endian; U1 … U8, I1 … I4, R4, R8, X1 …),
 /// std::arrays and structs of them. A message with lists, a tail or odd sizes says itself how its bytes follow each
-/// other, in a `template <class M, class V> static void fields(M& m, V& v)` that calls, in the order of the bytes,
+/// other, in a `static void fields(auto& m, auto& v)` that calls, in the order of the bytes,
 /// `v(m.a, m.b, …)` for such members, `v.count(m.items)` for a U1 that counts what `v.items(m.items)` later writes,
 /// `v.rest(m.items, least, most)` for what fills the payload, `v.if_present(m.optional)` for a tail that older firmware
 /// leaves out and `v.sized(m.value, bytes)` for an integer of three bytes, or whose size another field gives. UBX, MSP,

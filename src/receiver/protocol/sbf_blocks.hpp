@@ -67,8 +67,7 @@ struct SbfPvtGeodetic {
     std::uint16_t ppp_info = 0;
     std::optional<SbfPvtAccuracy> accuracy;  ///< since revision 1
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time, m.mode, m.error, m.latitude, m.longitude, m.height, m.undulation, m.vel_north, m.vel_east, m.vel_up,
           m.course, m.clock_bias, m.clock_drift, m.time_system, m.datum, m.num_sv, m.wa_corr_info, m.reference_id,
           m.mean_corr_age, m.signal_info, m.alert_flag, m.num_bases, m.ppp_info);
@@ -186,8 +185,7 @@ struct SbfChannelStatus {
     std::array<std::uint8_t, 3> reserved{};
     std::vector<SbfChannel> channels;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.channels);
         v(m.sb1_length, m.sb2_length, m.reserved);
@@ -222,8 +220,7 @@ struct SbfReceiverStatus {
     std::uint8_t temperature = 0;  ///< deg C + 100, 0 unknown
     std::vector<SbfFrontEnd> front_ends;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time, m.cpu_load, m.ext_error, m.up_time, m.rx_state, m.rx_error);
         v.count(m.front_ends);
         v(m.sb_length, m.command_count, m.temperature);
@@ -255,8 +252,7 @@ struct SbfAuxAntPositions {
     std::uint8_t sb_length = part_bytes;
     std::vector<SbfAuxAntenna> antennas;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.antennas);
         v(m.sb_length);

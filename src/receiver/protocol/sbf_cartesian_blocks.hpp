@@ -102,8 +102,7 @@ struct SbfBaseVectorCart {
     std::uint8_t sb_length = part_bytes;
     std::vector<SbfBaseVectorXyz> bases;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.bases);
         v(m.sb_length);
@@ -134,8 +133,7 @@ struct SbfSatVisibility {
     std::uint8_t sb_length = part_bytes;
     std::vector<SbfVisibleSatellite> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.satellites);
         v(m.sb_length);

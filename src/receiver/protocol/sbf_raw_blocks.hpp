@@ -48,8 +48,7 @@ struct SbfMeasuredSatellite {
     std::uint8_t obs_info = 0;  ///< bits: 0 smoothed, 2 half a cycle unknown, 3-7 GLONASS channel + 8, or signal − 32
     std::vector<SbfOtherSignal> others;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.rx_channel, m.type, m.svid, m.misc, m.code_lsb, m.doppler, m.carrier_lsb, m.carrier_msb, m.cn0, m.lock_time,
           m.obs_info);
         v.count(m.others);
@@ -77,8 +76,7 @@ struct SbfMeasEpoch {
     std::uint8_t reserved = 0;
     std::vector<SbfMeasuredSatellite> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.satellites);
         v(m.sb1_length, m.sb2_length, m.common_flags, m.clock_jumps, m.reserved);
@@ -116,8 +114,7 @@ struct SbfMeasExtra {
     float doppler_var_factor = 0;  ///< the Doppler's variance over the carrier's, mHz²/mcycles²
     std::vector<SbfSignalExtra> signals;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.signals);
         v(m.sb_length, m.doppler_var_factor);

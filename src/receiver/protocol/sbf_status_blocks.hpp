@@ -61,8 +61,7 @@ struct SbfBaseVectorGeod {
     std::uint8_t sb_length = part_bytes;
     std::vector<SbfBaseVector> bases;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.bases);
         v(m.sb_length);
@@ -88,8 +87,7 @@ struct SbfQualityInd {
     std::uint8_t reserved = 0;
     std::vector<SbfIndicator> indicators;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.indicators);
         v(m.reserved);
@@ -119,8 +117,7 @@ struct SbfRfStatus {
     std::array<std::uint8_t, 3> reserved{};
     std::vector<SbfRfBand> bands;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.time);
         v.count(m.bands);
         v(m.sb_length, m.flags, m.reserved);

@@ -43,10 +43,7 @@ struct CfgPrt {
     static constexpr UbxMessageId message_id{0x06, 0x00};
     std::vector<CfgPrtItem> ports;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v.rest(m.ports, 1, 255);
-    }
+    static void fields(auto& m, auto& v) { v.rest(m.ports, 1, 255); }
 };
 
 /// CFG-MSG, the question for one message.
@@ -121,8 +118,7 @@ struct CfgGnss {
     std::uint8_t num_trk_ch_use = 0;  ///< 255 all
     std::vector<CfgGnssItem> systems;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.num_trk_ch_hw, m.num_trk_ch_use);
         v.count(m.systems);
         v.items(m.systems);
@@ -137,8 +133,7 @@ struct CfgCfg {
     std::uint32_t load_mask = 0;
     std::optional<std::uint8_t> device_mask;  ///< bits: 0 battery-backed RAM, 1 flash, 2 EEPROM, 4 SPI flash
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.clear_mask, m.save_mask, m.load_mask);
         v.if_present(m.device_mask);
     }
@@ -163,8 +158,7 @@ struct ConfigPair {
     std::uint32_t key = 0;
     std::uint64_t value = 0;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.key);
         v.sized(m.value, config_value_size(m.key));
     }
@@ -179,8 +173,7 @@ struct CfgValset {
     std::uint8_t reserved = 0;
     std::vector<ConfigPair> pairs;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.layers, m.transaction, m.reserved);
         v.rest(m.pairs, 0, 64);
     }
@@ -194,8 +187,7 @@ struct CfgValgetPoll {
     std::uint16_t position = 0;  ///< how many to skip
     std::vector<std::uint32_t> keys;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.layer, m.position);
         v.rest(m.keys, 0, 64);
     }
@@ -209,8 +201,7 @@ struct CfgValget {
     std::uint16_t position = 0;  ///< as asked
     std::vector<ConfigPair> pairs;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.layer, m.position);
         v.rest(m.pairs, 0, 64);
     }
@@ -225,8 +216,7 @@ struct CfgValdel {
     std::uint8_t reserved = 0;
     std::vector<std::uint32_t> keys;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.layers, m.transaction, m.reserved);
         v.rest(m.keys, 0, 64);
     }

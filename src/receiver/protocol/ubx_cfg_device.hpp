@@ -135,10 +135,7 @@ struct CfgInf {
     static constexpr UbxMessageId message_id{0x06, 0x02};
     std::vector<CfgInfItem> protocols;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v.rest(m.protocols, 1, 255);
-    }
+    static void fields(auto& m, auto& v) { v.rest(m.protocols, 1, 255); }
 };
 
 /// What every form of CFG-NMEA begins with.

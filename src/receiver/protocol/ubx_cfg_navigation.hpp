@@ -112,8 +112,7 @@ struct CfgGeofence {
     std::uint8_t reserved1 = 0;
     std::vector<CfgGeofenceItem> fences;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version);
         v.count(m.fences);
         v(m.conf_lvl, m.reserved0, m.pio_enabled, m.pin_polarity, m.pin, m.reserved1);

@@ -81,8 +81,7 @@ struct MonHw3 {
     std::array<std::uint8_t, 9> reserved0{};
     std::vector<MonHw3Item> pins;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version);
         v.count(m.pins);
         v(m.flags, m.hw_version, m.reserved0);
@@ -115,8 +114,7 @@ struct MonRf {
     std::array<std::uint8_t, 2> reserved0{};
     std::vector<MonRfItem> blocks;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version);
         v.count(m.blocks);
         v(m.reserved0);
@@ -141,8 +139,7 @@ struct MonSpan {
     std::array<std::uint8_t, 2> reserved0{};
     std::vector<MonSpanItem> blocks;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version);
         v.count(m.blocks);
         v(m.reserved0);
@@ -166,8 +163,7 @@ struct SecSigBand {
     std::uint64_t centre = 0;  ///< kHz, 24 bits
     std::uint8_t jammed = 0;   ///< bits: 0 jammed
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v.sized(m.centre, 3);
         v(m.jammed);
     }
@@ -182,8 +178,7 @@ struct SecSig2 {
     std::uint8_t reserved0 = 0;
     std::vector<SecSigBand> bands;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.sig_sec_flags, m.reserved0);
         v.count(m.bands);
         v.items(m.bands);
@@ -205,8 +200,7 @@ struct SecSiglog {
     std::array<std::uint8_t, 6> reserved0{};
     std::vector<SecSiglogItem> events;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version);
         v.count(m.events);
         v(m.reserved0);

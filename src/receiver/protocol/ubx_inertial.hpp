@@ -80,8 +80,7 @@ struct EsfStatus {
     std::array<std::uint8_t, 2> reserved2{};
     std::vector<EsfStatusItem> sensors;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.version, m.reserved1, m.fusion_mode, m.reserved2);
         v.count(m.sensors);
         v.items(m.sensors);

@@ -47,8 +47,7 @@ struct MonVer {
     std::array<char, 10> hw_version{};
     std::vector<UbxText<30>> extensions;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.sw_version, m.hw_version);
         v.rest(m.extensions, 0, 2000);
     }
@@ -61,8 +60,7 @@ struct SecUniqid {
     std::array<std::uint8_t, 3> reserved{};
     std::vector<std::uint8_t> unique_id;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.reserved);
         v.rest(m.unique_id, 5, 6);
     }
@@ -74,10 +72,7 @@ struct Inf {
     static constexpr UbxMessageId message_id{0x04, Id};
     std::vector<char> text;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v.rest(m.text, 0, 65535);
-    }
+    static void fields(auto& m, auto& v) { v.rest(m.text, 0, 65535); }
 };
 
 using InfError = Inf<0x00>;
@@ -131,8 +126,7 @@ struct MonPatch {
     std::uint16_t n_entries = 0;  ///< patches that follow
     std::vector<MonPatchItem> patches;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.n_entries);
         v.rest(m.patches, 0, 4095);
     }
@@ -182,8 +176,7 @@ struct MonComms {
     std::array<std::uint8_t, 4> prot_ids{};  ///< 0 UBX, 1 NMEA, 2 RTCM2, 5 RTCM3, 6 SPARTN, 255 none
     std::vector<MonCommsItem> ports;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version);
         v.count(m.ports);
         v(m.tx_errors, m.reserved0, m.prot_ids);
@@ -227,10 +220,7 @@ struct MonIo {
     static constexpr UbxMessageId message_id{0x0A, 0x02};
     std::vector<MonIoItem> ports;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
-        v.rest(m.ports, 0, 255);
-    }
+    static void fields(auto& m, auto& v) { v.rest(m.ports, 0, 255); }
 };
 
 /// MON-MSGPP: messages received by port and protocol (M8 interface description).

@@ -56,8 +56,7 @@ struct NavPvt {
     std::uint32_t reserved = 0;
     std::optional<NavPvtVehicle> vehicle;  ///< absent on u-blox 7
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.year, m.month, m.day, m.hour, m.minute, m.second, m.valid, m.t_acc, m.nano, m.fix_type, m.flags,
           m.flags2, m.num_sv, m.lon, m.lat, m.height, m.h_msl, m.h_acc, m.v_acc, m.vel_n, m.vel_e, m.vel_d, m.g_speed,
           m.head_mot, m.s_acc, m.head_acc, m.p_dop, m.flags3, m.reserved);

@@ -49,8 +49,7 @@ struct RxmMeasx {
     std::array<std::uint8_t, 8> reserved3{};
     std::vector<RxmMeasxItem> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.version, m.reserved0, m.gps_tow, m.glo_tow, m.bds_tow, m.gal_tow, m.qzss_tow, m.gps_tow_acc, m.glo_tow_acc,
           m.bds_tow_acc, m.reserved2, m.qzss_tow_acc);
         v.count(m.satellites);
@@ -100,8 +99,7 @@ struct RxmSvsi {
     std::uint8_t num_vis = 0;  ///< satellites above the horizon
     std::vector<RxmSvsiItem> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.week, m.num_vis);
         v.count(m.satellites);
         v.items(m.satellites);

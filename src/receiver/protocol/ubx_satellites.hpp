@@ -33,8 +33,7 @@ struct NavSat {
     std::array<std::uint8_t, 2> reserved{};
     std::vector<NavSatItem> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.version);
         v.count(m.satellites);
         v(m.reserved);
@@ -62,8 +61,7 @@ struct NavSvinfo {
     std::array<std::uint8_t, 2> reserved{};
     std::vector<NavSvinfoItem> channels;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow);
         v.count(m.channels);
         v(m.global_flags, m.reserved);
@@ -94,8 +92,7 @@ struct NavSig {
     std::array<std::uint8_t, 2> reserved{};
     std::vector<NavSigItem> signals;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.version);
         v.count(m.signals);
         v(m.reserved);
@@ -132,8 +129,7 @@ struct RxmRawx {
     std::array<std::uint8_t, 2> reserved{};
     std::vector<RxmRawxItem> measurements;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.rcv_tow, m.week, m.leap_s);
         v.count(m.measurements);
         v(m.rec_stat, m.version, m.reserved);
@@ -153,8 +149,7 @@ struct RxmSfrbx {
     std::uint8_t reserved = 0;
     std::vector<std::uint32_t> words;  ///< as received
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.gnss_id, m.sv_id, m.sig_id, m.freq_id);
         v.count(m.words);
         v(m.chn, m.version, m.reserved);

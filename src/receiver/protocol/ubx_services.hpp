@@ -38,8 +38,7 @@ struct NavOrb {
     std::array<std::uint8_t, 2> reserved{};
     std::vector<NavOrbItem> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.version);
         v.count(m.satellites);
         v(m.reserved);
@@ -72,8 +71,7 @@ struct NavSbas {
     std::array<std::uint8_t, 2> reserved1{};
     std::vector<NavSbasItem> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.geo, m.mode, m.sys, m.service);
         v.count(m.satellites);
         v(m.status_flags, m.reserved1);
@@ -101,8 +99,7 @@ struct NavDgps {
     std::array<std::uint8_t, 2> reserved1{};
     std::vector<NavDgpsItem> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.age, m.base_id, m.base_health);
         v.count(m.satellites);
         v(m.status, m.reserved1);
@@ -134,8 +131,7 @@ struct NavGeofence {
     std::uint8_t comb_state = 0;  ///< 0 unknown, 1 inside, 2 outside
     std::vector<NavGeofenceItem> fences;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.version, m.status);
         v.count(m.fences);
         v(m.comb_state);
@@ -165,8 +161,7 @@ struct NavSlas {
     std::uint8_t service_flags = 0;  ///< bits: 0 station available, 1 satellite available, 2 test
     std::vector<NavSlasItem> satellites;
 
-    template <class M, class V>
-    static void fields(M& m, V& v) {
+    static void fields(auto& m, auto& v) {
         v(m.i_tow, m.version, m.reserved0, m.gms_lon, m.gms_lat, m.gms_code, m.qzss_sv_id, m.service_flags);
         v.count(m.satellites);
         v.items(m.satellites);
