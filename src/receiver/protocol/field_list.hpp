@@ -196,4 +196,14 @@ std::optional<Message> decode_front(ByteSpan payload) {
     return message;
 }
 
+/// A list of message types.
+template <class... Message>
+struct MessageTypes {
+    /// Calls `f.template operator()<Message>()` for one after the other, until one says true; whether one did.
+    template <class F>
+    static bool any(F&& f) {
+        return (f.template operator()<Message>() || ...);
+    }
+};
+
 }  // namespace skyloop::inline receiver

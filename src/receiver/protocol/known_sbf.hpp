@@ -7,21 +7,12 @@
 
 namespace skyloop::inline receiver {
 
-template <class... Message>
-struct SbfBlocks {
-    /// Calls `f.template operator()<Message>()` for one after the other, until one says true; whether one did.
-    template <class F>
-    static bool any(F&& f) {
-        return (f.template operator()<Message>() || ...);
-    }
-};
-
 using KnownSbfBlocks =
-    SbfBlocks<SbfMeasEpoch, SbfMeasExtra, SbfEndOfMeas, SbfGpsRawCa, SbfGloRawCa, SbfGalRawInav, SbfBdsRaw,
-              SbfQzsRawL1Ca, SbfGpsNav, SbfGloNav, SbfGalNav, SbfBdsNav, SbfQzsNav, SbfPvtCartesian, SbfPvtGeodetic,
-              SbfPosCovCartesian, SbfPosCovGeodetic, SbfVelCovCartesian, SbfVelCovGeodetic, SbfDop, SbfBaseVectorCart,
-              SbfBaseVectorGeod, SbfEndOfPvt, SbfAttEuler, SbfAttCovEuler, SbfAuxAntPositions, SbfEndOfAtt,
-              SbfReceiverTime, SbfChannelStatus, SbfReceiverStatus, SbfSatVisibility, SbfQualityInd, SbfRfStatus,
-              SbfGalAuthStatus, SbfReceiverSetup>;
+    MessageTypes<SbfMeasEpoch, SbfMeasExtra, SbfEndOfMeas, SbfGpsRawCa, SbfGloRawCa, SbfGalRawInav, SbfBdsRaw,
+                 SbfQzsRawL1Ca, SbfGpsNav, SbfGloNav, SbfGalNav, SbfBdsNav, SbfQzsNav, SbfPvtCartesian, SbfPvtGeodetic,
+                 SbfPosCovCartesian, SbfPosCovGeodetic, SbfVelCovCartesian, SbfVelCovGeodetic, SbfDop,
+                 SbfBaseVectorCart, SbfBaseVectorGeod, SbfEndOfPvt, SbfAttEuler, SbfAttCovEuler, SbfAuxAntPositions,
+                 SbfEndOfAtt, SbfReceiverTime, SbfChannelStatus, SbfReceiverStatus, SbfSatVisibility, SbfQualityInd,
+                 SbfRfStatus, SbfGalAuthStatus, SbfReceiverSetup>;
 
 }  // namespace skyloop::inline receiver

@@ -225,19 +225,10 @@ struct MavlinkOdometry {
     std::int8_t quality = 0;  ///< %; 0 unknown, −1 failed
 };
 
-template <class... Message>
-struct MavlinkMessages {
-    /// Calls `f.template operator()<Message>()` for one after the other, until one says true; whether one did.
-    template <class F>
-    static bool any(F&& f) {
-        return (f.template operator()<Message>() || ...);
-    }
-};
-
 using KnownMavlinkMessages =
-    MavlinkMessages<MavlinkHeartbeat, MavlinkSystemTime, MavlinkGpsRawInt, MavlinkAttitude, MavlinkAttitudeQuaternion,
-                    MavlinkLocalPositionNed, MavlinkGlobalPositionInt, MavlinkGpsGlobalOrigin, MavlinkCommandInt,
-                    MavlinkCommandLong, MavlinkCommandAck, MavlinkSimState, MavlinkHilGps, MavlinkHilStateQuaternion,
-                    MavlinkGpsInput, MavlinkGpsRtcmData, MavlinkOdometry>;
+    MessageTypes<MavlinkHeartbeat, MavlinkSystemTime, MavlinkGpsRawInt, MavlinkAttitude, MavlinkAttitudeQuaternion,
+                 MavlinkLocalPositionNed, MavlinkGlobalPositionInt, MavlinkGpsGlobalOrigin, MavlinkCommandInt,
+                 MavlinkCommandLong, MavlinkCommandAck, MavlinkSimState, MavlinkHilGps, MavlinkHilStateQuaternion,
+                 MavlinkGpsInput, MavlinkGpsRtcmData, MavlinkOdometry>;
 
 }  // namespace skyloop::inline receiver
