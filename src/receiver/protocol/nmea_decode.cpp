@@ -8,100 +8,6 @@
 #include "detail/nmea_field_text.hpp"
 #include "receiver/protocol/nmea_messages.hpp"
 
-namespace skyloop::inline receiver::nmea_decoding {
-
-Result<NmeaMessage> decode_gns(FieldReader r) {
-    Gns m;
-    m.talker = r.talker();
-    m.time = r.time(0);
-    m.position = r.position(1);
-    for (const char letter : r.text(5)) {
-        if (std::string_view("NADEFRMSP").find(letter) == std::string_view::npos) r.refuse(5, "mode indicators");
-        m.modes.push_back(static_cast<NmeaMode>(letter));
-    }
-    m.satellites_used = r.integer(6, "a number of satellites").value_or(0);
-    m.hdop = r.number(7, "a DOP");
-    m.altitude = r.metres(8, "an altitude");
-    m.geoid_separation = r.metres(9, "a geoid separation");
-    if (const auto age = r.number(10, "an age of corrections")) m.correction_age = Seconds(*age);
-    m.correction_station = r.integer(11, "a station number");
-    return r.finish(std::move(m), 12);
-}
-
-Result<NmeaMessage> decode_gbs(FieldReader r) {
-    Gbs m;
-    m.talker = r.talker();
-    m.time = r.time(0);
-    m.latitude = r.metres(1, "an error");
-    m.longitude = r.metres(2, "an error");
-    m.altitude = r.metres(3, "an error");
-    m.satellite = r.integer(4, "a satellite");
-    m.missed_probability = r.number(5, "a probability");
-    m.bias = r.metres(6, "a bias");
-    m.bias_deviation = r.metres(7, "a deviation");
-    m.system_id = r.integer(8, "a system id", 16);
-    m.signal_id = r.integer(9, "a signal id", 16);
-    return r.finish(std::move(m), 8);
-}
-
-Result<NmeaMessage> decode_grs(FieldReader r) {
-    constexpr std::size_t first = 2, last = 14;
-    Grs m;
-    m.talker = r.talker();
-    m.time = r.time(0);
-    m.mode = r.integer(1, "a mode").value_or(0);
-    for (std::size_t i = first; i < last; ++i)
-        m.residuals.push_back(r.metres(i, "a residual"));
-    while (!m.residuals.empty() && !m.residuals.back())
-        m.residuals.pop_back();
-    m.system_id = r.integer(14, "a system id", 16);
-    m.signal_id = r.integer(15, "a signal id", 16);
-    return r.finish(std::move(m), 14);
-}
-
-Result<NmeaMessage> decode_dtm(FieldReader r) {
-    Dtm m;
-    m.talker = r.talker();
-    m.datum = r.text(0);
-    m.subdivision = r.text(1);
-    const double north = r.number(2, "an offset").value_or(0), east = r.number(4, "an offset").value_or(0);
-    m.latitude_minutes = r.either(3, "NS", "N or S") ? north : -north;
-    m.longitude_minutes = r.either(5, "EW", "E or W") ? east : -east;
-    m.altitude_m = r.number(6, "an offset").value_or(0);
-    m.reference = r.text(7);
-    return r.finish(std::move(m), 8);
-}
-
-Result<NmeaMessage> decode_vlw(FieldReader r) {
-    constexpr double nautical_mile = 1852.0;
-    Vlw m;
-    m.talker = r.talker();
-    if (const auto total = r.number(4, "a distance")) m.total = Metres(*total * nautical_mile);
-    if (const auto trip = r.number(6, "a distance")) m.since_reset = Metres(*trip * nautical_mile);
-    return r.finish(std::move(m), 4);
-}
-
-Result<NmeaMessage> decode_ths(FieldReader r) {
-    Ths m;
-    m.talker = r.talker();
-    m.heading = r.degrees(0, "a heading");
-    if (r.text(1).size() != 1 || std::string_view("AEMSV").find(r.text(1)[0]) == std::string_view::npos)
-        r.refuse(1, "a mode");
-    else
-        m.mode = r.text(1)[0];
-    return r.finish(std::move(m), 2);
-}
-
-Result<NmeaMessage> decode_hdt(FieldReader r) {
-    Hdt m;
-    m.talker = r.talker();
-    m.heading = r.degrees(0, "a heading");
-    r.either(1, "T", "T");
-    return r.finish(std::move(m), 2);
-}
-
-}  // namespace skyloop::inline receiver::nmea_decoding
-
 namespace skyloop::inline receiver {
 namespace {
 
@@ -134,9 +40,7 @@ std::optional<MetresPerSecond> course_speed(FieldReader& r) {
     return low <= high ? std::optional(MetresPerSecond((low + high) / 2)) : from_knots(knots);
 }
 
-Result<NmeaMessage> decode_rmc(FieldReader r) {
-    Rmc m;
-    m.talker = r.talker();
+void read(Rmc& m, FieldReader& r) {
     m.time = r.time(0);
     m.valid = r.either(1, "AV", "A or V");
     m.position = r.position(2);
@@ -144,21 +48,15 @@ Result<NmeaMessage> decode_rmc(FieldReader r) {
     m.course = r.degrees(7, "a course");
     m.date = r.packed_date(8);
     m.mode = r.mode(11);
-    return r.finish(std::move(m), 9);
 }
 
-Result<NmeaMessage> decode_vtg(FieldReader r) {
-    Vtg m;
-    m.talker = r.talker();
+void read(Vtg& m, FieldReader& r) {
     m.course = r.degrees(0, "a course");
     m.speed = course_speed(r);
     m.mode = r.mode(8);
-    return r.finish(std::move(m), 8);
 }
 
-Result<NmeaMessage> decode_gga(FieldReader r) {
-    Gga m;
-    m.talker = r.talker();
+void read(Gga& m, FieldReader& r) {
     m.time = r.time(0);
     m.position = r.position(1);
     m.quality = r.integer(5, "a fix quality").value_or(0);
@@ -168,13 +66,10 @@ Result<NmeaMessage> decode_gga(FieldReader r) {
     m.geoid_separation = r.metres(10, "a geoid separation");
     if (const auto age = r.number(12, "an age of corrections")) m.correction_age = Seconds(*age);
     m.correction_station = r.integer(13, "a station number");
-    return r.finish(std::move(m), 12);
 }
 
-Result<NmeaMessage> decode_gsa(FieldReader r) {
+void read(Gsa& m, FieldReader& r) {
     constexpr std::size_t first = 2, last = 14;
-    Gsa m;
-    m.talker = r.talker();
     m.automatic = r.either(0, "AM", "A or M");
     m.fix_mode = r.integer(1, "a fix mode").value_or(1);
     for (std::size_t i = first; i < last; ++i)
@@ -183,13 +78,10 @@ Result<NmeaMessage> decode_gsa(FieldReader r) {
     m.hdop = r.number(15, "a DOP");
     m.vdop = r.number(16, "a DOP");
     m.system_id = r.integer(17, "a system id", 16);
-    return r.finish(std::move(m), 17);
 }
 
-Result<NmeaMessage> decode_gsv(FieldReader r) {
+void read(Gsv& m, FieldReader& r) {
     constexpr std::size_t header = 3, block = 4;
-    Gsv m;
-    m.talker = r.talker();
     m.pages = r.integer(0, "a number of pages").value_or(1);
     m.page = r.integer(1, "a page").value_or(1);
     m.satellites_in_view = r.integer(2, "a number of satellites").value_or(0);
@@ -206,22 +98,16 @@ Result<NmeaMessage> decode_gsv(FieldReader r) {
         if (satellite != GsvSatellite{}) m.satellites.push_back(satellite);
     }
     if (rest % block == 1) m.signal_id = r.integer(r.size() - 1, "a signal id", 16);
-    return r.finish(std::move(m), header);
 }
 
-Result<NmeaMessage> decode_gll(FieldReader r) {
-    Gll m;
-    m.talker = r.talker();
+void read(Gll& m, FieldReader& r) {
     m.position = r.position(0);
     m.time = r.time(4);
     m.valid = r.either(5, "AV", "A or V");
     m.mode = r.mode(6);
-    return r.finish(std::move(m), 6);
 }
 
-Result<NmeaMessage> decode_gst(FieldReader r) {
-    Gst m;
-    m.talker = r.talker();
+void read(Gst& m, FieldReader& r) {
     m.time = r.time(0);
     m.range_rms = r.metres(1, "a deviation");
     m.semi_major = r.metres(2, "a deviation");
@@ -230,15 +116,11 @@ Result<NmeaMessage> decode_gst(FieldReader r) {
     m.latitude = r.metres(5, "a deviation");
     m.longitude = r.metres(6, "a deviation");
     m.altitude = r.metres(7, "a deviation");
-    return r.finish(std::move(m), 8);
 }
 
-Result<NmeaMessage> decode_zda(FieldReader r) {
-    Zda m;
-    m.talker = r.talker();
+void read(Zda& m, FieldReader& r) {
     m.time = r.time(0);
     m.date = r.date(1, 2, 3);
-    return r.finish(std::move(m), 4);
 }
 
 std::string unescaped(std::string_view text) {
@@ -256,9 +138,7 @@ std::string unescaped(std::string_view text) {
     return out;
 }
 
-Result<NmeaMessage> decode_txt(FieldReader r) {
-    Txt m;
-    m.talker = r.talker();
+void read(Txt& m, FieldReader& r) {
     m.count = r.integer(0, "a number of sentences").value_or(1);
     m.index = r.integer(1, "a sentence number").value_or(1);
     m.type = r.integer(2, "a text type").value_or(0);
@@ -267,29 +147,106 @@ Result<NmeaMessage> decode_txt(FieldReader r) {
     for (std::size_t i = 4; i < r.size(); ++i)
         text += "," + std::string(r.text(i));
     m.text = unescaped(text);
-    return r.finish(std::move(m), 4);
+}
+
+void read(Gns& m, FieldReader& r) {
+    m.time = r.time(0);
+    m.position = r.position(1);
+    for (const char letter : r.text(5)) {
+        if (std::string_view("NADEFRMSP").find(letter) == std::string_view::npos) r.refuse(5, "mode indicators");
+        m.modes.push_back(static_cast<NmeaMode>(letter));
+    }
+    m.satellites_used = r.integer(6, "a number of satellites").value_or(0);
+    m.hdop = r.number(7, "a DOP");
+    m.altitude = r.metres(8, "an altitude");
+    m.geoid_separation = r.metres(9, "a geoid separation");
+    if (const auto age = r.number(10, "an age of corrections")) m.correction_age = Seconds(*age);
+    m.correction_station = r.integer(11, "a station number");
+}
+
+void read(Gbs& m, FieldReader& r) {
+    m.time = r.time(0);
+    m.latitude = r.metres(1, "an error");
+    m.longitude = r.metres(2, "an error");
+    m.altitude = r.metres(3, "an error");
+    m.satellite = r.integer(4, "a satellite");
+    m.missed_probability = r.number(5, "a probability");
+    m.bias = r.metres(6, "a bias");
+    m.bias_deviation = r.metres(7, "a deviation");
+    m.system_id = r.integer(8, "a system id", 16);
+    m.signal_id = r.integer(9, "a signal id", 16);
+}
+
+void read(Grs& m, FieldReader& r) {
+    constexpr std::size_t first = 2, last = 14;
+    m.time = r.time(0);
+    m.mode = r.integer(1, "a mode").value_or(0);
+    for (std::size_t i = first; i < last; ++i)
+        m.residuals.push_back(r.metres(i, "a residual"));
+    while (!m.residuals.empty() && !m.residuals.back())
+        m.residuals.pop_back();
+    m.system_id = r.integer(14, "a system id", 16);
+    m.signal_id = r.integer(15, "a signal id", 16);
+}
+
+void read(Dtm& m, FieldReader& r) {
+    m.datum = r.text(0);
+    m.subdivision = r.text(1);
+    const double north = r.number(2, "an offset").value_or(0), east = r.number(4, "an offset").value_or(0);
+    m.latitude_minutes = r.either(3, "NS", "N or S") ? north : -north;
+    m.longitude_minutes = r.either(5, "EW", "E or W") ? east : -east;
+    m.altitude_m = r.number(6, "an offset").value_or(0);
+    m.reference = r.text(7);
+}
+
+void read(Vlw& m, FieldReader& r) {
+    constexpr double nautical_mile = 1852.0;
+    if (const auto total = r.number(4, "a distance")) m.total = Metres(*total * nautical_mile);
+    if (const auto trip = r.number(6, "a distance")) m.since_reset = Metres(*trip * nautical_mile);
+}
+
+void read(Ths& m, FieldReader& r) {
+    m.heading = r.degrees(0, "a heading");
+    if (r.text(1).size() != 1 || std::string_view("AEMSV").find(r.text(1)[0]) == std::string_view::npos)
+        r.refuse(1, "a mode");
+    else
+        m.mode = r.text(1)[0];
+}
+
+void read(Hdt& m, FieldReader& r) {
+    m.heading = r.degrees(0, "a heading");
+    r.either(1, "T", "T");
+}
+
+template <class Message, std::size_t least_fields>
+Result<NmeaMessage> decode(FieldReader r) {
+    Message message;
+    message.talker = r.talker();
+    read(message, r);
+    if (const Result<void> good = r.verdict(least_fields); !good) return fail(good.error());
+    return NmeaMessage(std::move(message));
 }
 
 struct Decoder {
     std::string_view formatter;
     Result<NmeaMessage> (*decode)(FieldReader);
 };
-constexpr std::array<Decoder, 16> decoders{{{"RMC", decode_rmc},
-                                            {"VTG", decode_vtg},
-                                            {"GGA", decode_gga},
-                                            {"GSA", decode_gsa},
-                                            {"GSV", decode_gsv},
-                                            {"GLL", decode_gll},
-                                            {"GST", decode_gst},
-                                            {"ZDA", decode_zda},
-                                            {"TXT", decode_txt},
-                                            {"GNS", decode_gns},
-                                            {"GBS", decode_gbs},
-                                            {"GRS", decode_grs},
-                                            {"DTM", decode_dtm},
-                                            {"VLW", decode_vlw},
-                                            {"THS", decode_ths},
-                                            {"HDT", decode_hdt}}};
+constexpr std::array<Decoder, 16> decoders{{{"RMC", decode<Rmc, 9>},
+                                            {"VTG", decode<Vtg, 8>},
+                                            {"GGA", decode<Gga, 12>},
+                                            {"GSA", decode<Gsa, 17>},
+                                            {"GSV", decode<Gsv, 3>},
+                                            {"GLL", decode<Gll, 6>},
+                                            {"GST", decode<Gst, 8>},
+                                            {"ZDA", decode<Zda, 4>},
+                                            {"TXT", decode<Txt, 4>},
+                                            {"GNS", decode<Gns, 12>},
+                                            {"GBS", decode<Gbs, 8>},
+                                            {"GRS", decode<Grs, 14>},
+                                            {"DTM", decode<Dtm, 8>},
+                                            {"VLW", decode<Vlw, 4>},
+                                            {"THS", decode<Ths, 2>},
+                                            {"HDT", decode<Hdt, 2>}}};
 
 }  // namespace
 

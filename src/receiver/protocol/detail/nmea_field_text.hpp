@@ -93,11 +93,6 @@ public:
 
     /// Nothing, or why the sentence is not what it should be.
     [[nodiscard]] Result<void> verdict(std::size_t least_fields) const;
-    template <class Message>
-    Result<NmeaMessage> finish(Message message, std::size_t least_fields) const {
-        if (const Result<void> good = verdict(least_fields); !good) return fail(good.error());
-        return NmeaMessage(std::move(message));
-    }
 
 private:
     std::optional<double> coordinate(std::size_t i, std::string_view hemispheres, double limit);
@@ -105,14 +100,5 @@ private:
     const SentenceView& sentence_;
     std::string error_;
 };
-
-// The sentences of nmea_supplements.hpp.
-Result<NmeaMessage> decode_gns(FieldReader r);
-Result<NmeaMessage> decode_gbs(FieldReader r);
-Result<NmeaMessage> decode_grs(FieldReader r);
-Result<NmeaMessage> decode_dtm(FieldReader r);
-Result<NmeaMessage> decode_vlw(FieldReader r);
-Result<NmeaMessage> decode_ths(FieldReader r);
-Result<NmeaMessage> decode_hdt(FieldReader r);
 
 }  // namespace skyloop::inline receiver::nmea_decoding
