@@ -7,6 +7,7 @@
 
 #include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
+#include "receiver/protocol/nmea_satellites.hpp"
 #include "receiver/protocol/ubx_inertial.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
@@ -38,18 +39,6 @@ std::optional<SatelliteId> ubx_satellite(std::uint8_t gnss_id, std::uint8_t sv_i
         default:
             return std::nullopt;
     }
-}
-
-// The single numbering of NAV-SVINFO (same section, column "svId").
-std::optional<SatelliteId> single_number_satellite(std::uint8_t number) {
-    if (number >= 1 && number <= 32) return SatelliteId{Constellation::gps, number};
-    if (number >= 33 && number <= 64) return SatelliteId{Constellation::beidou, number - 27};
-    if (number >= 65 && number <= 96) return SatelliteId{Constellation::glonass, number - 64};
-    if (number >= 120 && number <= 158) return SatelliteId{Constellation::sbas, number - 100};
-    if (number >= 159 && number <= 163) return SatelliteId{Constellation::beidou, number - 158};
-    if (number >= 193 && number <= 202) return SatelliteId{Constellation::qzss, number - 192};
-    if (number >= 211 && number <= 246) return SatelliteId{Constellation::galileo, number - 210};
-    return std::nullopt;
 }
 
 FixType ubx_fix_type(unsigned type, unsigned flags, unsigned carrier) {
@@ -238,7 +227,7 @@ void UbxEpochs::take_satellites(const UbxFrameView& frame) {
         std::size_t used = 0;
         for (const NavSvinfoItem& item : m.channels) {
             if ((item.flags & 1u) != 0) ++used;
-            if (const auto id = single_number_satellite(item.sv_id))
+            if (const auto id = single_byte_satellite(item.sv_id))
                 add_signal(e.told.signals, {*id, static_cast<double>(item.cno), item.elev});
         }
         e.list_satellites(used);

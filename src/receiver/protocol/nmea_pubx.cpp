@@ -142,28 +142,4 @@ Result<PubxMessage> decode_pubx(const SentenceView& sentence) {
     return *message;
 }
 
-std::optional<int> single_byte_number(SatelliteId satellite) {
-    const int n = satellite.number;
-    const auto within = [n](int first, int last, int offset) {
-        return n >= first && n <= last ? std::optional(n + offset) : std::nullopt;
-    };
-    switch (satellite.constellation) {
-        case Constellation::gps:
-            return within(1, 32, 0);
-        case Constellation::sbas:
-            return within(20, 58, 100);
-        case Constellation::galileo:
-            return within(1, 36, 210);
-        case Constellation::beidou:
-            return n <= 5 ? within(1, 5, 158) : within(6, 37, 27);
-        case Constellation::qzss:
-            return within(1, 10, 192);
-        case Constellation::glonass:
-            return within(1, 32, 64);
-        case Constellation::navic:
-            return std::nullopt;
-    }
-    return std::nullopt;
-}
-
 }  // namespace skyloop::inline receiver

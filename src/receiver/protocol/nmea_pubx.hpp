@@ -10,7 +10,6 @@
 #include "base/core/result.hpp"
 #include "receiver/protocol/nmea_fields.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
-#include "world/gnss/satellite.hpp"
 
 namespace skyloop::inline receiver {
 
@@ -68,8 +67,5 @@ std::string encode(const PubxTime& message, const NmeaFormat& format);
 
 /// Reads PUBX,00, 03 and 04 as a receiver sends them. Fails with `input`, naming the field, for everything else.
 Result<PubxMessage> decode_pubx(const SentenceView& sentence);
-
-/// A satellite's number in one byte (RECEIVER.md 5.6), or nothing where it has none.
-std::optional<int> single_byte_number(SatelliteId satellite);
 
 }  // namespace skyloop::inline receiver

@@ -1,6 +1,7 @@
 #include "receiver/protocol/nmea_satellites.hpp"
 
 #include <array>
+#include <span>
 
 namespace skyloop::inline receiver {
 namespace {
@@ -27,9 +28,22 @@ constexpr std::array<NumberRange, 8> common_ranges{{
     {401, 63, Constellation::beidou, 1},
 }};
 
-std::optional<SatelliteId> lookup(const NumberRange& range, int number) {
-    if (number < range.first || number >= range.first + range.count) return std::nullopt;
-    return SatelliteId{range.constellation, range.from + number - range.first};
+// The numbering in one byte (u-blox M8 protocol specification, "Satellite Numbering").
+constexpr std::array<NumberRange, 7> single_byte_ranges{{
+    {1, 32, Constellation::gps, 1},
+    {33, 32, Constellation::beidou, 6},
+    {65, 32, Constellation::glonass, 1},
+    {120, 39, Constellation::sbas, 20},
+    {159, 5, Constellation::beidou, 1},
+    {193, 10, Constellation::qzss, 1},
+    {211, 36, Constellation::galileo, 1},
+}};
+
+std::optional<SatelliteId> lookup(std::span<const NumberRange> ranges, int number) {
+    for (const NumberRange& range : ranges)
+        if (number >= range.first && number < range.first + range.count)
+            return SatelliteId{range.constellation, range.from + number - range.first};
+    return std::nullopt;
 }
 
 // The system that numbers from 1 on belong to.
@@ -59,88 +73,51 @@ std::optional<int> added_in_4_10(int number, int last, int offset, bool since_4_
     return numbering == NmeaNumbering::extended ? within(number, last, offset) : std::nullopt;
 }
 
-// L2 and L5 are those of which receivers tell the civil long code and the pilot.
-int gps_signal_id(Signal signal) {
-    switch (signal) {
-        case Signal::l1:
-            return 1;
-        case Signal::l2:
-            return 6;
-        case Signal::l5:
-            return 8;
-        default:
-            return 0;
-    }
-}
+struct SignalId {
+    Constellation constellation;
+    Signal signal;
+    int id;
+};
 
-int galileo_signal_id(Signal signal) {
-    switch (signal) {
-        case Signal::l1:
-            return 7;
-        case Signal::l5:
-            return 1;
-        case Signal::e5b:
-            return 2;
-        default:
-            return 0;
-    }
-}
-
-int beidou_signal_id(Signal signal, NmeaVersion version) {
-    switch (signal) {
-        case Signal::b1i:
-            return 1;
-        case Signal::e5b:
-            return version >= NmeaVersion::v4_11 ? 0xB : 3;
-        case Signal::l1:
-            return 3;
-        case Signal::l5:
-            return 5;
-        case Signal::b3i:
-            return 8;
-        default:
-            return 0;
-    }
-}
+// Of version 4.11. L2 and L5 are those of which receivers tell the civil long code and the pilot.
+constexpr std::array<SignalId, 18> signal_ids{{
+    {Constellation::gps, Signal::l1, 1},
+    {Constellation::gps, Signal::l2, 6},
+    {Constellation::gps, Signal::l5, 8},
+    {Constellation::qzss, Signal::l1, 1},
+    {Constellation::qzss, Signal::l2, 6},
+    {Constellation::qzss, Signal::l5, 8},
+    {Constellation::sbas, Signal::l1, 1},
+    {Constellation::galileo, Signal::l1, 7},
+    {Constellation::galileo, Signal::l5, 1},
+    {Constellation::galileo, Signal::e5b, 2},
+    {Constellation::beidou, Signal::b1i, 1},
+    {Constellation::beidou, Signal::e5b, 0xB},
+    {Constellation::beidou, Signal::l1, 3},
+    {Constellation::beidou, Signal::l5, 5},
+    {Constellation::beidou, Signal::b3i, 8},
+    {Constellation::glonass, Signal::g1, 1},
+    {Constellation::glonass, Signal::g2, 3},
+    {Constellation::navic, Signal::l5, 1},
+}};
 
 }  // namespace
 
 int nmea_signal_id(Constellation constellation, Signal signal, NmeaVersion version) {
-    switch (constellation) {
-        case Constellation::gps:
-        case Constellation::qzss:
-            return gps_signal_id(signal);
-        case Constellation::sbas:
-            return signal == Signal::l1 ? 1 : 0;
-        case Constellation::galileo:
-            return galileo_signal_id(signal);
-        case Constellation::beidou:
-            return beidou_signal_id(signal, version);
-        case Constellation::glonass:
-            return signal == Signal::g1 ? 1 : signal == Signal::g2 ? 3 : 0;
-        case Constellation::navic:
-            return signal == Signal::l5 ? 1 : 0;
-    }
+    constexpr int b2i_before_4_11 = 3;
+    if (constellation == Constellation::beidou && signal == Signal::e5b && version < NmeaVersion::v4_11)
+        return b2i_before_4_11;
+    for (const SignalId& row : signal_ids)
+        if (row.constellation == constellation && row.signal == signal) return row.id;
     return 0;
 }
 
 NmeaSystem nmea_system(Constellation constellation, NmeaVersion version) {
-    switch (constellation) {
-        case Constellation::gps:
-        case Constellation::sbas:
-            return gps_group;
-        case Constellation::glonass:
-            return {"GL", 2, 1};
-        case Constellation::galileo:
-            return {"GA", 3, 7};
-        case Constellation::beidou:
-            return {"GB", 4, 1};
-        case Constellation::qzss:
-            return version >= NmeaVersion::v4_11 ? NmeaSystem{"GQ", 5, 1} : gps_group;
-        case Constellation::navic:
-            return {"GI", 6, 1};
-    }
-    return gps_group;
+    // In the order of Constellation.
+    static constexpr std::array<NmeaSystem, constellation_names.size()> systems{
+        {gps_group, gps_group, {"GA", 3, 7}, {"GB", 4, 1}, {"GQ", 5, 1}, {"GL", 2, 1}, {"GI", 6, 1}}};
+    if (constellation == Constellation::qzss && version < NmeaVersion::v4_11) return gps_group;
+    return systems.at(static_cast<std::size_t>(constellation));
 }
 
 std::optional<int> nmea_satellite_number(SatelliteId satellite, NmeaVersion version, NmeaNumbering numbering) {
@@ -167,10 +144,19 @@ std::optional<int> nmea_satellite_number(SatelliteId satellite, NmeaVersion vers
 
 std::optional<SatelliteId> satellite_from_nmea(int number, std::string_view talker, int system_id) {
     if (const auto own = own_range(talker, system_id))
-        if (const auto satellite = lookup(*own, number)) return satellite;
-    for (const NumberRange& range : common_ranges)
-        if (const auto satellite = lookup(range, number)) return satellite;
+        if (const auto satellite = lookup({&*own, 1}, number)) return satellite;
+    return lookup(common_ranges, number);
+}
+
+std::optional<int> single_byte_number(SatelliteId satellite) {
+    for (const NumberRange& range : single_byte_ranges) {
+        const int place = satellite.number - range.from;
+        if (satellite.constellation == range.constellation && place >= 0 && place < range.count)
+            return range.first + place;
+    }
     return std::nullopt;
 }
+
+std::optional<SatelliteId> single_byte_satellite(int number) { return lookup(single_byte_ranges, number); }
 
 }  // namespace skyloop::inline receiver

@@ -38,4 +38,10 @@ std::optional<int> nmea_satellite_number(SatelliteId satellite, NmeaVersion vers
 /// GSA sentence (0 where there is none). Nothing for numbers outside every table.
 std::optional<SatelliteId> satellite_from_nmea(int number, std::string_view talker, int system_id = 0);
 
+/// A satellite's number in one byte, as u-blox counts in PUBX,03 and NAV-SVINFO (RECEIVER.md 5.6), or nothing where it
+/// has none.
+std::optional<int> single_byte_number(SatelliteId satellite);
+/// The satellite of such a number.
+std::optional<SatelliteId> single_byte_satellite(int number);
+
 }  // namespace skyloop::inline receiver

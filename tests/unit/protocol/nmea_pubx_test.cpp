@@ -87,21 +87,6 @@ TEST(Pubx, IsRefusedNamingTheField) {
     EXPECT_THAT(pubx_refusal("PUBX"), HasSubstr("expected PUBX 00, 03 or 04"));
 }
 
-// RECEIVER.md 5.6, second column.
-TEST(SingleByteNumber, FollowsTheTable) {
-    using enum Constellation;
-    EXPECT_EQ(single_byte_number({gps, 32}), 32);
-    EXPECT_EQ(single_byte_number({sbas, 20}), 120);
-    EXPECT_EQ(single_byte_number({galileo, 36}), 246);
-    EXPECT_EQ(single_byte_number({beidou, 1}), 159);
-    EXPECT_EQ(single_byte_number({beidou, 6}), 33);
-    EXPECT_EQ(single_byte_number({beidou, 37}), 64);
-    EXPECT_EQ(single_byte_number({beidou, 38}), std::nullopt);
-    EXPECT_EQ(single_byte_number({qzss, 10}), 202);
-    EXPECT_EQ(single_byte_number({glonass, 24}), 88);
-    EXPECT_EQ(single_byte_number({navic, 1}), std::nullopt);
-}
-
 TEST(Pubx, SurvivesARoundTrip) {
     RandomStream random(13, "pubx");
     const auto uniform = [&](double low, double high) { return low + (high - low) * random.uniform(); };

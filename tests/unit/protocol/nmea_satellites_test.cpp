@@ -93,5 +93,29 @@ TEST(SatelliteFromNmea, KnowsVendorTalkersAndRefusesOtherNumbers) {
     EXPECT_EQ(satellite_from_nmea(-3, "GL"), std::nullopt);
 }
 
+// RECEIVER.md 5.6, second column.
+TEST(SingleByteNumber, FollowsTheTable) {
+    EXPECT_EQ(single_byte_number({gps, 32}), 32);
+    EXPECT_EQ(single_byte_number({sbas, 20}), 120);
+    EXPECT_EQ(single_byte_number({galileo, 36}), 246);
+    EXPECT_EQ(single_byte_number({beidou, 1}), 159);
+    EXPECT_EQ(single_byte_number({beidou, 6}), 33);
+    EXPECT_EQ(single_byte_number({beidou, 37}), 64);
+    EXPECT_EQ(single_byte_number({beidou, 38}), std::nullopt);
+    EXPECT_EQ(single_byte_number({qzss, 10}), 202);
+    EXPECT_EQ(single_byte_number({glonass, 24}), 88);
+    EXPECT_EQ(single_byte_number({navic, 1}), std::nullopt);
+}
+
+TEST(SingleByteNumber, IsInverted) {
+    int satellites = 0;
+    for (int number = 0; number < 256; ++number)
+        if (const auto satellite = single_byte_satellite(number)) {
+            EXPECT_EQ(single_byte_number(*satellite), number);
+            ++satellites;
+        }
+    EXPECT_EQ(satellites, 32 + 39 + 36 + 37 + 10 + 32);
+}
+
 }  // namespace
 }  // namespace skyloop
