@@ -171,14 +171,6 @@ std::optional<int> msm_kind(int number) {
     return kind;
 }
 
-std::optional<Constellation> msm_constellation(int number) {
-    if (!msm_kind(number)) return std::nullopt;
-    constexpr std::array systems{Constellation::gps,  Constellation::glonass, Constellation::galileo,
-                                 Constellation::sbas, Constellation::qzss,    Constellation::beidou,
-                                 Constellation::navic};
-    return systems[static_cast<std::size_t>((number - 1070) / 10)];
-}
-
 namespace {
 
 constexpr double metres_per_ms = speed_of_light * 1e-3;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
-#include "world/gnss/satellite.hpp"
 
 namespace skyloop::inline receiver {
 
@@ -69,8 +68,6 @@ Bytes encode(const Rtcm3MsmHeader& header);
 
 /// The kind 1 … 7 of a multiple signal message; nothing for other numbers.
 std::optional<int> msm_kind(int number);
-/// The system of a multiple signal message.
-std::optional<Constellation> msm_constellation(int number);
 
 /// One signal of one satellite.
 struct Rtcm3MsmCell {

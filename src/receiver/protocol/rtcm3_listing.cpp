@@ -5,6 +5,7 @@
 
 #include "base/core/bytes.hpp"
 #include "receiver/protocol/field_lister.hpp"
+#include "receiver/protocol/rtcm3.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
@@ -49,57 +50,50 @@ private:
     std::vector<DecodedField> fields_;
 };
 
+// Of 1071 …, 1081 … and so on (RTCM 10403.3, table 3.5-78).
 constexpr std::array<std::string_view, 7> msm_systems{"GPS", "GLONASS", "Galileo", "SBAS", "QZSS", "BeiDou", "NavIC"};
 
-// MSM1 … MSM7 of seven systems: 1071 … 1137 (RTCM 10403.3, table 3.5-78).
-bool is_msm(unsigned number) { return number >= 1071 && number <= 1137 && number % 10 >= 1 && number % 10 <= 7; }
-
-bool is_gps_observables(unsigned number) { return number >= 1001 && number <= 1004; }
-bool is_glonass_observables(unsigned number) { return number >= 1009 && number <= 1012; }
+bool is_gps_observables(int number) { return number >= 1001 && number <= 1004; }
+bool is_glonass_observables(int number) { return number >= 1009 && number <= 1012; }
 
 // On L1, extended with ambiguity and C/N0 or not, then on both carriers.
-std::string observables_name(unsigned number) {
-    const unsigned form = number - (is_gps_observables(number) ? 1001 : 1009);
+std::string observables_name(int number) {
+    const int form = number - (is_gps_observables(number) ? 1001 : 1009);
     return fmt::format("{} L1{} observables{}", is_gps_observables(number) ? "GPS" : "GLONASS",
                        form >= 2 ? " and L2" : "", form % 2 == 0 ? ", basic" : "");
 }
 
-std::string rtcm3_name(unsigned number) {
+struct Rtcm3Name {
+    int number;
+    std::string_view name;
+};
+constexpr std::array<Rtcm3Name, 13> rtcm3_names{{
+    {1005, "station position"},
+    {1006, "station position and antenna height"},
+    {1007, "antenna"},
+    {1008, "antenna"},
+    {1019, "GPS ephemeris"},
+    {1020, "GLONASS ephemeris"},
+    {1033, "receiver and antenna"},
+    {1042, "BeiDou ephemeris"},
+    {1044, "QZSS ephemeris"},
+    {1045, "Galileo F/NAV ephemeris"},
+    {1046, "Galileo I/NAV ephemeris"},
+    {1230, "GLONASS code-phase biases"},
+    {4072, "u-blox reference station"},
+}};
+
+std::string rtcm3_name(int number) {
     if (is_gps_observables(number) || is_glonass_observables(number)) return observables_name(number);
-    if (is_msm(number)) return fmt::format("{} MSM{}", msm_systems[(number - 1071) / 10], number % 10);
-    switch (number) {
-        case 1005:
-            return "station position";
-        case 1006:
-            return "station position and antenna height";
-        case 1007:
-        case 1008:
-            return "antenna";
-        case 1019:
-            return "GPS ephemeris";
-        case 1020:
-            return "GLONASS ephemeris";
-        case 1033:
-            return "receiver and antenna";
-        case 1042:
-            return "BeiDou ephemeris";
-        case 1044:
-            return "QZSS ephemeris";
-        case 1045:
-            return "Galileo F/NAV ephemeris";
-        case 1046:
-            return "Galileo I/NAV ephemeris";
-        case 1230:
-            return "GLONASS code-phase biases";
-        case 4072:
-            return "u-blox reference station";
-        default:
-            return {};
-    }
+    if (const auto kind = msm_kind(number))
+        return fmt::format("{} MSM{}", msm_systems[static_cast<std::size_t>((number - 1071) / 10)], *kind);
+    for (const Rtcm3Name& known : rtcm3_names)
+        if (known.number == number) return std::string(known.name);
+    return {};
 }
 
 // GPS, Galileo, QZSS and BeiDou count milliseconds of a week, GLONASS a day and milliseconds of it (DF034, DF416).
-void list_msm(unsigned number, RtcmLister& to) {
+void list_msm(int number, RtcmLister& to) {
     to.number("station", 12);
     if ((number - 1071) / 10 == 1) {
         to.number("day_of_week", 3);
@@ -118,7 +112,7 @@ void list_msm(unsigned number, RtcmLister& to) {
     to.mask("signals", 32);
 }
 
-void list_station(unsigned number, RtcmLister& to) {
+void list_station(int number, RtcmLister& to) {
     to.number("station", 12);
     to.number("itrf_year", 6);
     to.skip(4);
@@ -130,7 +124,7 @@ void list_station(unsigned number, RtcmLister& to) {
     if (number == 1006) to.scaled("antenna_height_m*1e-4", 16, false);
 }
 
-void list_descriptors(unsigned number, RtcmLister& to) {
+void list_descriptors(int number, RtcmLister& to) {
     to.number("station", 12);
     to.text("antenna");
     to.number("antenna_setup", 8);
@@ -142,7 +136,7 @@ void list_descriptors(unsigned number, RtcmLister& to) {
 }
 
 // Legacy observables: the head alone (RTCM 10403.3, tables 3.5-1 and 3.5-9).
-void list_observables(unsigned number, RtcmLister& to) {
+void list_observables(int number, RtcmLister& to) {
     to.number("station", 12);
     if (is_gps_observables(number))
         to.scaled("tow_s*1e-3", 30, false);
@@ -152,8 +146,8 @@ void list_observables(unsigned number, RtcmLister& to) {
     to.number("satellites", 5);
 }
 
-bool list_known(unsigned number, RtcmLister& to) {
-    if (is_msm(number)) {
+bool list_known(int number, RtcmLister& to) {
+    if (msm_kind(number)) {
         list_msm(number, to);
     } else if (number == 1005 || number == 1006) {
         list_station(number, to);
@@ -182,7 +176,7 @@ void list_rtcm3(ByteSpan payload, DecodedMessage& message) {
         return;
     }
     RtcmLister lister(payload);
-    const auto number = static_cast<unsigned>(payload[0] << 4 | payload[1] >> 4);
+    const int number = payload[0] << 4 | payload[1] >> 4;
     lister.skip(12);
     message.id = fmt::format("{}", number);
     message.name = rtcm3_name(number);

@@ -110,7 +110,6 @@ TEST(Rtcm3, MsmHeadersComeBack) {
     const Bytes frame = encode(header);
     EXPECT_EQ(decode_msm_header(*parse_rtcm3(frame)), header);
     EXPECT_EQ(msm_kind(1127), 7);
-    EXPECT_EQ(msm_constellation(1127), Constellation::beidou);
     EXPECT_FALSE(msm_kind(1078));
     EXPECT_FALSE(msm_kind(1005));
 }
