@@ -6,25 +6,26 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "base/time/utc_time.hpp"
 #include "detail/observed_parts.hpp"
 
 namespace skyloop::inline receiver {
+
+/// What a letter of FMT says of a column.
+struct DataflashType {
+    char letter;
+    std::size_t size;
+    double (*read)(ByteSpan record, std::size_t at);
+    double scale;  ///< in logs whose FMTU gives no multiplier
+};
+
 namespace {
 
 // ArduPilot, libraries/AP_Logger/LogStructure.h, as FEEDS.md 1.8 sums it up.
 constexpr std::uint8_t dataflash_head_1 = 0xA3, dataflash_head_2 = 0x95, dataflash_fmt = 128;
 constexpr std::size_t dataflash_fmt_length = 89, dataflash_head = 3;
-
-std::size_t dataflash_size(char letter) {
-    static constexpr std::string_view one = "bBM", two = "hHcCg", four = "iIeELfn", eight = "qQd";
-    if (one.find(letter) != std::string_view::npos) return 1;
-    if (two.find(letter) != std::string_view::npos) return 2;
-    if (four.find(letter) != std::string_view::npos) return 4;
-    if (eight.find(letter) != std::string_view::npos) return 8;
-    return letter == 'a' || letter == 'Z' ? 64 : letter == 'N' ? 16 : 0;
-}
 
 std::string_view text_in(ByteSpan bytes, std::size_t at, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()) + at, size);
@@ -40,82 +41,64 @@ double half_number(std::uint16_t bits) {
     return (bits & 0x8000) != 0 ? -size : size;
 }
 
-double raw_value(ByteSpan record, const DataflashColumn& column) {
-    const std::size_t at = column.offset;
-    switch (column.letter) {
-        case 'b':
-            return number_at<std::int8_t>(record, at);
-        case 'B':
-        case 'M':
-            return record[at];
-        case 'h':
-        case 'c':
-            return number_at<std::int16_t>(record, at);
-        case 'H':
-        case 'C':
-            return number_at<std::uint16_t>(record, at);
-        case 'i':
-        case 'e':
-        case 'L':
-            return number_at<std::int32_t>(record, at);
-        case 'I':
-        case 'E':
-            return number_at<std::uint32_t>(record, at);
-        case 'q':
-            return static_cast<double>(number_at<std::int64_t>(record, at));
-        case 'Q':
-            return static_cast<double>(number_at<std::uint64_t>(record, at));
-        case 'f':
-            return static_cast<double>(number_at<float>(record, at));
-        case 'd':
-            return number_at<double>(record, at);
-        case 'g':
-            return half_number(number_at<std::uint16_t>(record, at));
-        default:
-            return 0;
-    }
+double half_at(ByteSpan bytes, std::size_t at) { return half_number(number_at<std::uint16_t>(bytes, at)); }
+double no_number(ByteSpan, std::size_t) { return 0; }
+
+template <class Number>
+constexpr DataflashType number_type(char letter, double scale = 1) {
+    return {letter, sizeof(Number), double_at<Number>, scale};
+}
+constexpr std::array<DataflashType, 21> dataflash_types{{
+    number_type<std::int8_t>('b'),
+    number_type<std::uint8_t>('B'),
+    number_type<std::uint8_t>('M'),
+    number_type<std::int16_t>('h'),
+    number_type<std::uint16_t>('H'),
+    number_type<std::int16_t>('c', 1e-2),
+    number_type<std::uint16_t>('C', 1e-2),
+    number_type<std::int32_t>('i'),
+    number_type<std::uint32_t>('I'),
+    number_type<std::int32_t>('e', 1e-2),
+    number_type<std::uint32_t>('E', 1e-2),
+    number_type<std::int32_t>('L', 1e-7),
+    number_type<std::int64_t>('q'),
+    number_type<std::uint64_t>('Q'),
+    number_type<float>('f'),
+    number_type<double>('d'),
+    {'g', 2, half_at, 1},
+    {'n', 4, no_number, 1},
+    {'N', 16, no_number, 1},
+    {'Z', 64, no_number, 1},
+    {'a', 64, no_number, 1},
+}};
+
+// Nothing for a letter that is unknown.
+const DataflashType* type_of(char letter) {
+    const auto found = std::find_if(dataflash_types.begin(), dataflash_types.end(),
+                                    [letter](const DataflashType& type) { return type.letter == letter; });
+    return found == dataflash_types.end() ? nullptr : &*found;
 }
 
 // FMTU, MULT: the multiplier of an id, of which ArduPilot keeps the list in LogStructure.h (log_Multipliers).
 std::optional<double> multiplier_of(char id) {
-    switch (id) {
-        case '-':
-        case '?':
-        case '0':
-            return 1;
-        case '1':
-            return 1e1;
-        case 'A':
-            return 1e-1;
-        case 'B':
-            return 1e-2;
-        case 'C':
-            return 1e-3;
-        case 'D':
-            return 1e-4;
-        case 'E':
-            return 1e-5;
-        case 'F':
-            return 1e-6;
-        case 'G':
-            return 1e-7;
-        case 'I':
-            return 1e-9;
-        case '2':
-            return 1e2;
-        case '!':
-            return 3.6;
-        case '/':
-            return 3600;
-        default:
-            return std::nullopt;
-    }
-}
-
-double letter_scale(char letter) {
-    static constexpr std::string_view hundredths = "cCeE";
-    if (hundredths.find(letter) != std::string_view::npos) return 1e-2;
-    return letter == 'L' ? 1e-7 : 1;
+    static constexpr auto multipliers = std::to_array<std::pair<char, double>>({{'-', 1},
+                                                                                {'?', 1},
+                                                                                {'0', 1},
+                                                                                {'1', 1e1},
+                                                                                {'2', 1e2},
+                                                                                {'A', 1e-1},
+                                                                                {'B', 1e-2},
+                                                                                {'C', 1e-3},
+                                                                                {'D', 1e-4},
+                                                                                {'E', 1e-5},
+                                                                                {'F', 1e-6},
+                                                                                {'G', 1e-7},
+                                                                                {'I', 1e-9},
+                                                                                {'!', 3.6},
+                                                                                {'/', 3600}});
+    for (const auto& [known, factor] : multipliers)
+        if (known == id) return factor;
+    return std::nullopt;
 }
 
 }  // namespace
@@ -126,7 +109,7 @@ std::optional<double> DataflashRecord::value(std::initializer_list<std::string_v
         if (found == format_.columns.end()) continue;
         const DataflashColumn& column = found->second;
         if (!is_inside(column)) continue;
-        const double result = raw_value(bytes_, column) * column.multiplier.value_or(letter_scale(column.letter));
+        const double result = column.type->read(bytes_, column.offset) * column.multiplier.value_or(column.type->scale);
         if (std::isfinite(result)) return result;
     }
     return std::nullopt;
@@ -135,12 +118,12 @@ std::optional<double> DataflashRecord::value(std::initializer_list<std::string_v
 std::optional<double> DataflashRecord::raw(std::initializer_list<std::string_view> names) const {
     for (const std::string_view name : names)
         if (const auto found = format_.columns.find(name); found != format_.columns.end() && is_inside(found->second))
-            return raw_value(bytes_, found->second);
+            return found->second.type->read(bytes_, found->second.offset);
     return std::nullopt;
 }
 
 bool DataflashRecord::is_inside(const DataflashColumn& column) const {
-    return column.offset + dataflash_size(column.letter) <= bytes_.size();
+    return column.offset + column.type->size <= bytes_.size();
 }
 
 std::optional<double> DataflashRecord::instance() const {
@@ -184,14 +167,15 @@ void DataflashReader::take_format(ByteSpan record) {
     std::string_view names = text_in(record, 25, 64);
     std::size_t offset = dataflash_head;
     for (const char letter : letters) {
-        const std::size_t size = dataflash_size(letter);
+        const DataflashType* column_type = type_of(letter);
         const std::size_t end = std::min(names.find(','), names.size());
         const std::string column(names.substr(0, end));
         names.remove_prefix(std::min(end + 1, names.size()));
-        if (size == 0 || offset + size > format.length) return;  // makes no sense: its records are passed over
-        format.columns[column] = {letter, offset, {}};
+        // One that makes no sense: its records are passed over.
+        if (!column_type || offset + column_type->size > format.length) return;
+        format.columns[column] = {column_type, offset, {}};
         format.order.push_back(column);
-        offset += size;
+        offset += column_type->size;
     }
     if (format.length < dataflash_head || type == dataflash_fmt) return;
     if ((format.name == "GPS" || format.name == "GPA") && format.columns.contains("I")) format.instance = "I";
@@ -319,9 +303,8 @@ DataflashFix dataflash_fix(const DataflashRecord& record) {
     const double week = record.raw({"GWk", "Week"}).value_or(0), ms = record.raw({"GMS", "TimeMS"}).value_or(-1);
     if (week > first_week && week < last_week && ms >= 0 && ms < 1000.0 * seconds_per_week)
         fix.time = to_gps_time(static_cast<std::int64_t>(week), ms / 1000);
-    const auto status = static_cast<std::size_t>(observed_number(record.value({"Status"})));
     told.is_solution = true;
-    told.type = status < types.size() ? types[status] : FixType::none;
+    told.type = numbered_type(types, observed_number(record.value({"Status"})));
     told.satellites_used = observed_number(record.value({"NSats"}));
     const auto latitude = record.value({"Lat"}), longitude = record.value({"Lng"}), altitude = record.value({"Alt"});
     if (told.type == FixType::none || !latitude || !longitude || !altitude) return fix;

@@ -18,11 +18,13 @@
 
 namespace skyloop::inline receiver {
 
+struct DataflashType;
+
 /// Where a column stands in a record, and how it is written.
 struct DataflashColumn {
-    char letter = 0;                     ///< its type
-    std::size_t offset = 0;              ///< in the record, its head counted
-    std::optional<double> multiplier{};  ///< by FMTU; nothing: by the letter
+    const DataflashType* type = nullptr;  ///< by its letter
+    std::size_t offset = 0;               ///< in the record, its head counted
+    std::optional<double> multiplier{};   ///< by FMTU; nothing: by the letter
 };
 
 /// What a type of record is called and holds.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -34,25 +35,9 @@ void add_words(ObservedMotion& motion, const ObservedMotion& told) {
 }
 
 // NMEA 0183 v4.11, GGA, field 6; 3 is the precise service, 7 and 8 are set by hand and simulated.
-FixType fix_type_of_quality(int quality) {
-    switch (quality) {
-        case 1:
-        case 3:
-        case 7:
-        case 8:
-            return FixType::fix_3d;
-        case 2:
-            return FixType::dgnss;
-        case 4:
-            return FixType::rtk_fixed;
-        case 5:
-            return FixType::rtk_float;
-        case 6:
-            return FixType::dead_reckoning;
-        default:
-            return FixType::none;
-    }
-}
+constexpr std::array quality_types{FixType::none,           FixType::fix_3d,    FixType::dgnss,
+                                   FixType::fix_3d,         FixType::rtk_fixed, FixType::rtk_float,
+                                   FixType::dead_reckoning, FixType::fix_3d,    FixType::fix_3d};
 
 FixType fix_type_of_mode(NmeaMode mode) {
     switch (mode) {
@@ -98,8 +83,8 @@ void NmeaEpochs::take_message(const NmeaMessage& message) {
     if (const auto* rmc = std::get_if<Rmc>(&message)) take_rmc(*rmc);
     if (const auto* said = std::get_if<Gga>(&message)) {
         taken_.part = says_gga;
-        take_fix({said->talker + "GGA", said->time, fix_type_of_quality(said->quality), said->position, said->altitude,
-                  said->geoid_separation, said->satellites_used, said->hdop, said->quality});
+        take_fix({said->talker + "GGA", said->time, numbered_type(quality_types, said->quality), said->position,
+                  said->altitude, said->geoid_separation, said->satellites_used, said->hdop, said->quality});
     }
     // A fix is made with any of the systems.
     if (const auto* said = std::get_if<Gns>(&message)) {

@@ -1,6 +1,7 @@
 #include "receiver/observed/sbf_epochs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -20,23 +21,12 @@ bool says(double value) { return value > sbf_nothing / 2; }
 FixType sbf_fix_type(unsigned mode, unsigned error) {
     constexpr unsigned two_dimensional = 0x80;
     if (error != 0) return FixType::none;
-    switch (mode & 15u) {
-        case 0:
-            return FixType::none;
-        case 2:
-        case 6:
-            return FixType::dgnss;
-        case 3:
-            return FixType::time_only;
-        case 4:
-        case 7:
-            return FixType::rtk_fixed;
-        case 5:
-        case 8:
-            return FixType::rtk_float;
-        default:
-            return (mode & two_dimensional) != 0 ? FixType::fix_2d : FixType::fix_3d;
-    }
+    static constexpr std::array types{FixType::none,      FixType::fix_3d,    FixType::dgnss,
+                                      FixType::time_only, FixType::rtk_fixed, FixType::rtk_float,
+                                      FixType::dgnss,     FixType::rtk_fixed, FixType::rtk_float};
+    const std::size_t number = mode & 15u;
+    const FixType type = number < types.size() ? types[number] : FixType::fix_3d;
+    return type == FixType::fix_3d && (mode & two_dimensional) != 0 ? FixType::fix_2d : type;
 }
 
 void take_motion(const SbfPvtGeodetic& pvt, ObservedEpoch& epoch) {

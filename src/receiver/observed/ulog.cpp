@@ -18,13 +18,21 @@ constexpr std::size_t ulog_header = 16, ulog_message_head = 3, ulog_longest = 10
 
 std::string_view characters_of(ByteSpan bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
-std::size_t ulog_type_size(std::string_view type) {
-    if (type == "int8_t" || type == "uint8_t" || type == "bool" || type == "char") return 1;
-    if (type == "int16_t" || type == "uint16_t") return 2;
-    if (type == "int32_t" || type == "uint32_t" || type == "float") return 4;
-    if (type == "int64_t" || type == "uint64_t" || type == "double") return 8;
-    return 0;
+struct UlogType {
+    std::string_view name;
+    std::size_t size;
+    double (*read)(ByteSpan record, std::size_t at);
+};
+template <class Number>
+constexpr UlogType ulog_type(std::string_view name) {
+    return {name, sizeof(Number), double_at<Number>};
 }
+constexpr std::array ulog_types{ulog_type<std::int8_t>("int8_t"),   ulog_type<std::uint8_t>("uint8_t"),
+                                ulog_type<std::uint8_t>("bool"),    ulog_type<std::uint8_t>("char"),
+                                ulog_type<std::int16_t>("int16_t"), ulog_type<std::uint16_t>("uint16_t"),
+                                ulog_type<std::int32_t>("int32_t"), ulog_type<std::uint32_t>("uint32_t"),
+                                ulog_type<std::int64_t>("int64_t"), ulog_type<std::uint64_t>("uint64_t"),
+                                ulog_type<float>("float"),          ulog_type<double>("double")};
 
 class UlogParser {
 public:
@@ -175,11 +183,12 @@ std::optional<std::size_t> UlogParser::flatten(std::string_view format, const st
             if (budget_-- == 0) return std::nullopt;
             std::string key = prefix + std::string(field_name);
             if (bracket != std::string_view::npos) key += fmt::format("[{}]", i);
-            const std::size_t size = ulog_type_size(type);
+            const auto plain = std::find_if(ulog_types.begin(), ulog_types.end(),
+                                            [type](const UlogType& known) { return known.name == type; });
             if (fields.size() > most_fields || offset > ulog_longest) return std::nullopt;
-            if (size > 0) {
-                fields[key] = {std::string(type), offset, size};
-                offset += size;
+            if (plain != ulog_types.end()) {
+                fields[key] = {plain->read, offset, plain->size};
+                offset += plain->size;
             } else {
                 const auto nested = flatten(type, key + ".", fields, offset, depth + 1);
                 if (!nested) return std::nullopt;
@@ -228,17 +237,7 @@ std::optional<double> UlogRecord::value(std::initializer_list<std::string_view> 
     for (const std::string_view name : names) {
         const auto found = fields_.find(name);
         if (found == fields_.end() || found->second.offset + found->second.size > bytes_.size()) continue;
-        const auto& [type, at, size] = found->second;
-        if (type == "double") return number_at<double>(bytes_, at);
-        if (type == "float") return static_cast<double>(number_at<float>(bytes_, at));
-        if (type == "uint64_t") return static_cast<double>(number_at<std::uint64_t>(bytes_, at));
-        if (type == "int64_t") return static_cast<double>(number_at<std::int64_t>(bytes_, at));
-        if (type == "uint32_t") return number_at<std::uint32_t>(bytes_, at);
-        if (type == "int32_t") return number_at<std::int32_t>(bytes_, at);
-        if (type == "uint16_t") return number_at<std::uint16_t>(bytes_, at);
-        if (type == "int16_t") return number_at<std::int16_t>(bytes_, at);
-        if (type == "int8_t") return number_at<std::int8_t>(bytes_, at);
-        return bytes_[at];
+        return found->second.read(bytes_, found->second.offset);
     }
     return std::nullopt;
 }

@@ -20,7 +20,7 @@ namespace skyloop::inline receiver {
 
 /// A field of a format, by its name; nested formats are flattened, as "esc[0].rpm".
 struct UlogField {
-    std::string type;
+    double (*read)(ByteSpan record, std::size_t at) = nullptr;
     std::size_t offset = 0, size = 0;
 };
 using UlogFields = std::map<std::string, UlogField, std::less<>>;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/core/std_additions.hpp"
@@ -11,25 +12,10 @@
 namespace skyloop::inline receiver {
 namespace {
 
-// PX4-Autopilot, msg/SensorGps.msg: fix_type.
-FixType ulog_fix_type(int type) {
-    switch (type) {
-        case 2:
-            return FixType::fix_2d;
-        case 3:
-            return FixType::fix_3d;
-        case 4:
-            return FixType::dgnss;
-        case 5:
-            return FixType::rtk_float;
-        case 6:
-            return FixType::rtk_fixed;
-        case 8:
-            return FixType::dead_reckoning;  // "extrapolated"
-        default:
-            return FixType::none;
-    }
-}
+// PX4-Autopilot, msg/SensorGps.msg: fix_type; 8 is "extrapolated".
+constexpr std::array ulog_fix_types{FixType::none,      FixType::none,  FixType::fix_2d,
+                                    FixType::fix_3d,    FixType::dgnss, FixType::rtk_float,
+                                    FixType::rtk_fixed, FixType::none,  FixType::dead_reckoning};
 
 // A height above the ellipsoid that differs from the one above the sea.
 bool tells_ellipsoid(const std::vector<UlogFix>& fixes) {
@@ -48,7 +34,7 @@ UlogFix fix_of(const UlogRecord& record) {
     UlogFix fix;
     fix.utc_us = number({"time_utc_usec", "time_gps_usec"});
     fix.boot_us = number({"timestamp"});
-    fix.told.type = ulog_fix_type(observed_number(record.value("fix_type")));
+    fix.told.type = numbered_type(ulog_fix_types, observed_number(record.value("fix_type")));
     fix.told.is_solution = true;
     fix.told.satellites_used = observed_number(record.value("satellites_used"));
     if (const auto h = number({"eph"})) fix.told.horizontal_accuracy = Metres(*h);

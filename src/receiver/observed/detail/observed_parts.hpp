@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,18 @@ Number number_at(ByteSpan bytes, std::size_t at) {
     Number value{};
     std::memcpy(&value, bytes.data() + at, sizeof(Number));
     return value;
+}
+
+/// The same as a double.
+template <class Number>
+double double_at(ByteSpan bytes, std::size_t at) {
+    return static_cast<double>(number_at<Number>(bytes, at));
+}
+
+/// The type of a fix that a format numbers 0, 1, …; none for a number that it does not have.
+inline FixType numbered_type(std::span<const FixType> types, int number) {
+    return number >= 0 && static_cast<std::size_t>(number) < types.size() ? types[static_cast<std::size_t>(number)]
+                                                                          : FixType::none;
 }
 
 /// The place, or nothing for numbers that are none. Degrees; metres above the ellipsoid.
