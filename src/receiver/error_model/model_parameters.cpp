@@ -8,28 +8,15 @@ namespace {
 constexpr std::array all_kinds{ErrorModelKind::ideal,           ErrorModelKind::constant_sigma,
                                ErrorModelKind::satellite_count, ErrorModelKind::whole_path,
                                ErrorModelKind::refraction,      ErrorModelKind::baseline};
+// In the same order, which is that of the enumeration too.
+constexpr std::array<std::string_view, all_kinds.size()> kind_names{"ideal",      "constant-sigma", "satellite-count",
+                                                                    "whole-path", "refraction",     "baseline"};
 
 }  // namespace
 
 std::span<const ErrorModelKind> error_model_kinds() { return all_kinds; }
 
-std::string_view error_model_name(ErrorModelKind kind) {
-    switch (kind) {
-        case ErrorModelKind::ideal:
-            return "ideal";
-        case ErrorModelKind::constant_sigma:
-            return "constant-sigma";
-        case ErrorModelKind::satellite_count:
-            return "satellite-count";
-        case ErrorModelKind::whole_path:
-            return "whole-path";
-        case ErrorModelKind::refraction:
-            return "refraction";
-        case ErrorModelKind::baseline:
-            return "baseline";
-    }
-    return "baseline";
-}
+std::string_view error_model_name(ErrorModelKind kind) { return kind_names.at(static_cast<std::size_t>(kind)); }
 
 std::optional<ErrorModelKind> error_model_from_name(std::string_view name) {
     for (const ErrorModelKind kind : all_kinds)
