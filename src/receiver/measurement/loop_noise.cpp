@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "detail/loop_noise.hpp"
@@ -9,54 +10,14 @@ namespace {
 
 constexpr double boc_jitter_ratio = 0.6;
 
-std::string_view name_of(Signal signal) {
-    switch (signal) {
-        case Signal::l1:
-            return "L1";
-        case Signal::l2:
-            return "L2";
-        case Signal::l5:
-            return "L5";
-        case Signal::e5b:
-            return "E5b";
-        case Signal::e6:
-            return "E6";
-        case Signal::b1i:
-            return "B1I";
-        case Signal::b3i:
-            return "B3I";
-        case Signal::g1:
-            return "G1";
-        case Signal::g2:
-            return "G2";
-    }
-    return "";
-}
-
-double chip_rate_ratio_of(Signal signal) {
-    switch (signal) {
-        case Signal::l5:
-        case Signal::e5b:
-        case Signal::b3i:
-            return 10;
-        case Signal::e6:
-            return 5;
-        case Signal::b1i:
-            return 2;
-        case Signal::g1:
-        case Signal::g2:
-            return 0.511 / 1.023;
-        case Signal::l1:
-        case Signal::l2:
-            break;
-    }
-    return 1;
-}
+// To 1.023 Mchip/s, in the order of Signal.
+constexpr std::array<double, signal_names.size()> chip_rate_ratios{
+    1, 1, 10, 10, 5, 2, 10, 0.511 / 1.023, 0.511 / 1.023};
 
 }  // namespace
 
 SignalTraits signal_traits(Constellation constellation, Signal signal) {
-    SignalTraits traits{chip_rate_ratio_of(signal), 1, false, false};
+    SignalTraits traits{chip_rate_ratios.at(static_cast<std::size_t>(signal)), 1, false, false};
     const bool galileo = constellation == Constellation::galileo;
     traits.boc = galileo && signal == Signal::l1;
     if (traits.boc) traits.jitter_ratio = boc_jitter_ratio;
@@ -80,7 +41,7 @@ std::string signal_stream_name(std::string_view process, SatelliteId satellite, 
     name += '.';
     name += to_string(satellite);
     name += '.';
-    name += name_of(signal);
+    name += signal_names.at(static_cast<std::size_t>(signal));
     return name;
 }
 

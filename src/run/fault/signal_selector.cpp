@@ -73,8 +73,8 @@ Result<SignalSelector> read_selector(const Parameters& parameters) {
     for (const std::string& name : parameters.texts("constellations"))
         if (const auto constellation = constellation_from_name(name)) selector.constellations.push_back(*constellation);
     for (const std::string& word : parameters.texts("signals")) {
-        const auto found = std::find(signal_words.begin(), signal_words.end(), word);
-        if (found != signal_words.end()) selector.signals.push_back(static_cast<Signal>(found - signal_words.begin()));
+        const auto found = std::find(signal_names.begin(), signal_names.end(), word);
+        if (found != signal_names.end()) selector.signals.push_back(static_cast<Signal>(found - signal_names.begin()));
     }
     auto satellites = read_satellites(parameters);
     if (!satellites) return fail(satellites.error());

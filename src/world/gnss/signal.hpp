@@ -27,6 +27,8 @@ enum class Signal {
     g1,   ///< GLONASS L1 by channel
     g2,   ///< GLONASS L2 by channel
 };
+/// As board and scenario files write them, in the order of Signal.
+inline constexpr std::array<std::string_view, 9> signal_names{"L1", "L2", "L5", "E5b", "E6", "B1I", "B3I", "G1", "G2"};
 
 /// The signal that a single-frequency receiver takes: L1, E1, B1I, G1; of NavIC L5.
 Signal first_signal(Constellation constellation);

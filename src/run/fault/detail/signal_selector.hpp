@@ -30,10 +30,8 @@ inline constexpr ParameterSpec constellations_parameter =
     words_parameter("constellations", constellation_names, "systems that are hit; none given: all");
 inline constexpr ParameterSpec satellites_parameter =
     texts_parameter("satellites", "satellites that are hit, as G07; none given: all");
-/// As board and scenario files write them, in the order of Signal.
-inline constexpr std::array<std::string_view, 9> signal_words{"L1", "L2", "L5", "E5b", "E6", "B1I", "B3I", "G1", "G2"};
 inline constexpr ParameterSpec signals_parameter =
-    words_parameter("signals", signal_words, "carriers that are hit; none given: all of a satellite");
+    words_parameter("signals", signal_names, "carriers that are hit; none given: all of a satellite");
 /// Satellites, and the sector and band of the sky.
 inline constexpr ParameterList satellite_selector{
     constellations_parameter,
