@@ -81,21 +81,23 @@ const DataflashType* type_of(char letter) {
 
 // FMTU, MULT: the multiplier of an id, of which ArduPilot keeps the list in LogStructure.h (log_Multipliers).
 std::optional<double> multiplier_of(char id) {
-    static constexpr auto multipliers = std::to_array<std::pair<char, double>>({{'-', 1},
-                                                                                {'?', 1},
-                                                                                {'0', 1},
-                                                                                {'1', 1e1},
-                                                                                {'2', 1e2},
-                                                                                {'A', 1e-1},
-                                                                                {'B', 1e-2},
-                                                                                {'C', 1e-3},
-                                                                                {'D', 1e-4},
-                                                                                {'E', 1e-5},
-                                                                                {'F', 1e-6},
-                                                                                {'G', 1e-7},
-                                                                                {'I', 1e-9},
-                                                                                {'!', 3.6},
-                                                                                {'/', 3600}});
+    static constexpr auto multipliers = std::to_array<std::pair<char, double>>({
+        {'-', 1},
+        {'?', 1},
+        {'0', 1},
+        {'1', 1e1},
+        {'2', 1e2},
+        {'A', 1e-1},
+        {'B', 1e-2},
+        {'C', 1e-3},
+        {'D', 1e-4},
+        {'E', 1e-5},
+        {'F', 1e-6},
+        {'G', 1e-7},
+        {'I', 1e-9},
+        {'!', 3.6},
+        {'/', 3600},
+    });
     for (const auto& [known, factor] : multipliers)
         if (known == id) return factor;
     return std::nullopt;

@@ -161,47 +161,6 @@ std::string hex_of(ByteSpan bytes) {
     return text;
 }
 
-std::string json_number(double value) {
-    if (!std::isfinite(value)) return "null";
-    // JSON has no "-0"; and what is whole is written as whole.
-    if (value == 0) return "0";
-    return fmt::format("{}", value);
-}
-
-std::string json_fields(const std::vector<DecodedField>& fields);
-
-std::string json_list(const std::vector<DecodedValue>& values);
-
-struct JsonValue {
-    std::string operator()(std::monostate) const { return "null"; }
-    std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
-    std::string operator()(std::uint64_t value) const { return fmt::format("{}", value); }
-    std::string operator()(double value) const { return json_number(value); }
-    std::string operator()(const std::string& value) const { return json_string(value); }
-    std::string operator()(const std::vector<DecodedValue>& values) const { return json_list(values); }
-    std::string operator()(const std::vector<DecodedField>& fields) const { return json_fields(fields); }
-};
-
-std::string json_list(const std::vector<DecodedValue>& values) {
-    std::string text = "[";
-    for (const DecodedValue& value : values) {
-        if (text.size() > 1) text += ',';
-        text += std::visit(JsonValue{}, value.content);
-    }
-    return text + ']';
-}
-
-std::string json_fields(const std::vector<DecodedField>& fields) {
-    std::string text = "{";
-    for (const DecodedField& field : fields) {
-        if (text.size() > 1) text += ',';
-        text += json_string(field.name) + ':' + std::visit(JsonValue{}, field.value.content);
-    }
-    return text + '}';
-}
-
-std::string text_fields(const std::vector<DecodedField>& fields);
-
 // Quoted where it could be taken for something else.
 std::string text_word(const std::string& word) {
     for (const char c : word)
@@ -209,31 +168,43 @@ std::string text_word(const std::string& word) {
     return word.empty() ? "\"\"" : word;
 }
 
-struct TextValue {
-    std::string operator()(std::monostate) const { return "-"; }
+// Values as JSON, or as a line of words.
+class ShownValue {
+public:
+    explicit ShownValue(bool json) : json_(json) {}
+
+    std::string operator()(std::monostate) const { return json_ ? "null" : "-"; }
     std::string operator()(std::int64_t value) const { return fmt::format("{}", value); }
     std::string operator()(std::uint64_t value) const { return fmt::format("{}", value); }
-    std::string operator()(double value) const { return std::isfinite(value) ? json_number(value) : "-"; }
-    std::string operator()(const std::string& value) const { return text_word(value); }
+    std::string operator()(double value) const {
+        if (!std::isfinite(value)) return (*this)(std::monostate());
+        // JSON has no "-0"; and what is whole is written as whole.
+        return value == 0 ? "0" : fmt::format("{}", value);
+    }
+    std::string operator()(const std::string& value) const { return json_ ? json_string(value) : text_word(value); }
     std::string operator()(const std::vector<DecodedValue>& values) const {
-        std::string text = "[";
-        for (const DecodedValue& value : values) {
-            if (text.size() > 1) text += ' ';
-            text += std::visit(*this, value.content);
-        }
-        return text + ']';
+        std::string text;
+        for (const DecodedValue& value : values)
+            add(text, std::visit(*this, value.content));
+        return '[' + text + ']';
     }
-    std::string operator()(const std::vector<DecodedField>& fields) const { return '{' + text_fields(fields) + '}'; }
-};
+    std::string operator()(const std::vector<DecodedField>& fields) const { return '{' + list(fields) + '}'; }
+    /// Without the braces.
+    [[nodiscard]] std::string list(const std::vector<DecodedField>& fields) const {
+        std::string text;
+        for (const DecodedField& field : fields)
+            add(text,
+                (json_ ? json_string(field.name) + ':' : field.name + '=') + std::visit(*this, field.value.content));
+        return text;
+    }
 
-std::string text_fields(const std::vector<DecodedField>& fields) {
-    std::string text;
-    for (const DecodedField& field : fields) {
-        if (!text.empty()) text += ' ';
-        text += field.name + '=' + std::visit(TextValue{}, field.value.content);
+private:
+    void add(std::string& text, const std::string& item) const {
+        if (!text.empty()) text += json_ ? ',' : ' ';
+        text += item;
     }
-    return text;
-}
+    bool json_;
+};
 
 }  // namespace
 
@@ -255,14 +226,14 @@ std::string json_line(const DecodedMessage& message, std::uint64_t offset) {
     std::string text = fmt::format("{{\"protocol\":{},\"offset\":{},\"bytes\":{},\"id\":{}",
                                    json_string(message.protocol), offset, message.bytes, json_string(message.id));
     if (!message.name.empty()) text += ",\"name\":" + json_string(message.name);
-    if (!message.fields.empty()) text += ",\"fields\":" + json_fields(message.fields);
+    if (!message.fields.empty()) text += ",\"fields\":" + ShownValue(true)(message.fields);
     if (!message.payload.empty()) text += ",\"payload\":\"" + hex_of(message.payload) + '"';
     return text + '}';
 }
 
 std::string text_line(const DecodedMessage& message) {
     std::string text = upper_case(message.protocol) + ' ' + (message.name.empty() ? message.id : message.name);
-    if (!message.fields.empty()) text += ' ' + text_fields(message.fields);
+    if (!message.fields.empty()) text += ' ' + ShownValue(false).list(message.fields);
     if (!message.payload.empty()) text += fmt::format(" {} bytes {}", message.payload.size(), hex_of(message.payload));
     return text;
 }
