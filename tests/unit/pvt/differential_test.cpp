@@ -1,5 +1,4 @@
-// What the corrections of a base station are worth: code, phase, and who has neither. differential.hpp is a header of
-// the folder's own, so this is seen in fixes.
+// What the corrections of a base station are worth: code, phase, and who has neither, as it is seen in fixes.
 #include <gtest/gtest.h>
 
 #include "receiver/pvt/navigation_engine.hpp"
