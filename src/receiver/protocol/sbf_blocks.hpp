@@ -85,30 +85,28 @@ inline constexpr SbfCovariance no_sbf_covariance = [] {
     return empty;
 }();
 
-/// PosCovGeodetic: covariance of latitude, longitude, height (all in metres) and clock.
-struct SbfPosCovGeodetic {
-    static constexpr std::uint16_t block_number = 5906;
-    static constexpr std::uint8_t block_revision = 0;
-    static constexpr std::string_view message_name = "PosCovGeodetic";
-    static constexpr std::string_view field_names = "tow_s*1e-3!4294967295 week!65535 mode error covariance_m2!-2e10";
-    SbfTime time;
-    std::uint8_t mode = 0;
-    std::uint8_t error = 1;
-    SbfCovariance covariance = no_sbf_covariance;  ///< m²; north, east, up, clock
-};
+/// Of the four blocks of covariances, the first being 5905.
+inline constexpr std::array<std::string_view, 4> sbf_covariance_names{"PosCovCartesian", "PosCovGeodetic",
+                                                                      "VelCovCartesian", "VelCovGeodetic"};
 
-/// VelCovGeodetic: covariance of the velocity north, east, up and of the clock's drift.
-struct SbfVelCovGeodetic {
-    static constexpr std::uint16_t block_number = 5908;
+/// The covariance of a position and the clock, or of a velocity and the clock's drift.
+template <std::uint16_t Number>
+struct SbfCovarianceBlock {
+    static constexpr std::uint16_t block_number = Number;
     static constexpr std::uint8_t block_revision = 0;
-    static constexpr std::string_view message_name = "VelCovGeodetic";
+    static constexpr std::string_view message_name = sbf_covariance_names[Number - 5905];
     static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 mode error covariance_m2ps2!-2e10";
+        message_name.starts_with("Pos") ? "tow_s*1e-3!4294967295 week!65535 mode error covariance_m2!-2e10"
+                                        : "tow_s*1e-3!4294967295 week!65535 mode error covariance_m2ps2!-2e10";
     SbfTime time;
     std::uint8_t mode = 0;
     std::uint8_t error = 1;
-    SbfCovariance covariance = no_sbf_covariance;  ///< m²/s²
+    SbfCovariance covariance = no_sbf_covariance;  ///< m² or m²/s²
 };
+using SbfPosCovCartesian = SbfCovarianceBlock<5905>;  ///< x, y, z, clock
+using SbfPosCovGeodetic = SbfCovarianceBlock<5906>;   ///< north, east, up, clock
+using SbfVelCovCartesian = SbfCovarianceBlock<5907>;
+using SbfVelCovGeodetic = SbfCovarianceBlock<5908>;
 
 /// DOP and protection levels. A DOP of 0 is none.
 struct SbfDop {

@@ -46,31 +46,6 @@ struct SbfPvtCartesian {
     SbfPvtAccuracy accuracy;
 };
 
-/// PosCovCartesian: covariance of x, y, z and clock.
-struct SbfPosCovCartesian {
-    static constexpr std::uint16_t block_number = 5905;
-    static constexpr std::uint8_t block_revision = 0;
-    static constexpr std::string_view message_name = "PosCovCartesian";
-    static constexpr std::string_view field_names = "tow_s*1e-3!4294967295 week!65535 mode error covariance_m2!-2e10";
-    SbfTime time;
-    std::uint8_t mode = 0;
-    std::uint8_t error = 1;
-    SbfCovariance covariance = no_sbf_covariance;  ///< m²
-};
-
-/// VelCovCartesian: covariance of the velocity along x, y, z and of the clock's drift.
-struct SbfVelCovCartesian {
-    static constexpr std::uint16_t block_number = 5907;
-    static constexpr std::uint8_t block_revision = 0;
-    static constexpr std::string_view message_name = "VelCovCartesian";
-    static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 mode error covariance_m2ps2!-2e10";
-    SbfTime time;
-    std::uint8_t mode = 0;
-    std::uint8_t error = 1;
-    SbfCovariance covariance = no_sbf_covariance;  ///< m²/s²
-};
-
 /// The base line to one base station in ECEF; the rest as in BaseVectorGeod.
 struct SbfBaseVectorXyz {
     std::uint8_t num_sv = 255;

@@ -61,41 +61,21 @@ struct TimTp {
     std::uint8_t ref_info = 0;     ///< bits: 0-3 reference GNSS, 4-7 UTC standard
 };
 
-/// NAV-TIMEGAL: the epoch in Galileo time (RECEIVER.md 3.1).
-struct NavTimegal {
-    static constexpr UbxMessageId message_id{0x01, 0x25};
-    std::uint32_t i_tow = 0;     ///< ms, GPS time of week of the epoch
-    std::uint32_t gal_tow = 0;   ///< s, time of week
-    std::int32_t f_gal_tow = 0;  ///< ns to add, -5e8 to 5e8
-    std::int16_t gal_wno = 0;    ///< week
-    std::int8_t leap_s = 0;      ///< s, against UTC
-    std::uint8_t valid = 0;      ///< bits: 0 time of week, 1 week, 2 leap seconds
-    std::uint32_t t_acc = 0;     ///< ns
-};
-
-/// NAV-TIMEBDS: the epoch in BeiDou time (RECEIVER.md 3.1).
-struct NavTimebds {
-    static constexpr UbxMessageId message_id{0x01, 0x24};
+/// The epoch in the time of a system that counts weeks (RECEIVER.md 3.1; QZSS: M10 interface description).
+template <std::uint8_t Id>
+struct NavSystemTime {
+    static constexpr UbxMessageId message_id{0x01, Id};
     std::uint32_t i_tow = 0;  ///< ms, GPS time of week of the epoch
-    std::uint32_t sow = 0;    ///< s, time of week
-    std::int32_t f_sow = 0;   ///< ns to add, -5e8 to 5e8
-    std::int16_t week = 0;    ///< week
+    std::uint32_t tow = 0;    ///< s, time of week
+    std::int32_t f_tow = 0;   ///< ns to add, -5e8 to 5e8
+    std::int16_t week = 0;
     std::int8_t leap_s = 0;   ///< s, against UTC
     std::uint8_t valid = 0;   ///< bits: 0 time of week, 1 week, 2 leap seconds
     std::uint32_t t_acc = 0;  ///< ns
 };
-
-/// NAV-TIMEQZSS: the epoch in QZSS time; like NAV-TIMEGAL (M10 interface description).
-struct NavTimeqzss {
-    static constexpr UbxMessageId message_id{0x01, 0x27};
-    std::uint32_t i_tow = 0;      ///< ms, GPS time of week of the epoch
-    std::uint32_t qzss_tow = 0;   ///< s, time of week
-    std::int32_t f_qzss_tow = 0;  ///< ns to add, -5e8 to 5e8
-    std::int16_t qzss_wno = 0;    ///< week
-    std::int8_t leap_s = 0;       ///< s, against UTC
-    std::uint8_t valid = 0;       ///< bits: 0 time of week, 1 week, 2 leap seconds
-    std::uint32_t t_acc = 0;      ///< ns
-};
+using NavTimebds = NavSystemTime<0x24>;   ///< NAV-TIMEBDS
+using NavTimegal = NavSystemTime<0x25>;   ///< NAV-TIMEGAL
+using NavTimeqzss = NavSystemTime<0x27>;  ///< NAV-TIMEQZSS
 
 /// NAV-TIMEGLO: the epoch in GLONASS time, UTC and three hours (RECEIVER.md 3.1).
 struct NavTimeglo {

@@ -284,9 +284,9 @@ TEST(FirmwareFaults, HidesJammingWhereNoOtherMessageTellsIt) {
 TEST(FirmwareFaults, CountsWeeksApartInEveryMessageThatHasThem) {
     UbxReport r(9, "2024-03-10T00:00:00Z");  // time of week 18 s in GPS time, 4 s in BeiDou time
     const auto told = [&] {
-        return std::vector<int>{r.report<NavTimegps>().week,      r.report<NavTimegal>().gal_wno,
+        return std::vector<int>{r.report<NavTimegps>().week,      r.report<NavTimegal>().week,
                                 r.report<NavSol>().week,          r.report<NavTimebds>().week,
-                                r.report<NavTimeqzss>().qzss_wno, r.report<RxmRawx>().week,
+                                r.report<NavTimeqzss>().week,     r.report<RxmRawx>().week,
                                 r.report<RxmSvsi>().week,         r.report<TimTp>().week,
                                 msp_sensor_gps(r.state).gps_week, mavlink_gps_input(r.state).time_week};
     };
@@ -309,7 +309,7 @@ TEST(FirmwareFaults, CountsTheWeekOfEachTimeScaleApartWhereThatEnds) {
     EXPECT_EQ(r.report<NavTimebds>().week, beidou);
     r.state.epoch.fix.time += 13s;  // BeiDou's first second
     EXPECT_EQ(r.report<NavTimegps>().week, gps + 1);
-    EXPECT_EQ(r.report<NavTimebds>().sow, 0u);
+    EXPECT_EQ(r.report<NavTimebds>().tow, 0u);
     EXPECT_EQ(r.report<NavTimebds>().week, beidou);
     r.state.epoch.fix.time += 2s;
     EXPECT_EQ(r.report<NavTimebds>().week, beidou + 1);

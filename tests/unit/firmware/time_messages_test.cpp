@@ -149,16 +149,16 @@ TEST(NavTimeMessages, AgreeWithACapturedReceiver) {
     EXPECT_EQ(glonass.f_tod, -64933);
     EXPECT_EQ(glonass.valid, 3);
     const auto beidou = f9.report<NavTimebds>();
-    EXPECT_EQ(beidou.sow, 0x06F4D0u);
+    EXPECT_EQ(beidou.tow, 0x06F4D0u);
     EXPECT_EQ(beidou.week, 0x03EF);
     EXPECT_EQ(beidou.leap_s, 4);
     const auto galileo = f9.report<NavTimegal>();
-    EXPECT_EQ(galileo.gal_tow, 0x06F4DEu);
-    EXPECT_EQ(galileo.gal_wno, 0x053B);
+    EXPECT_EQ(galileo.tow, 0x06F4DEu);
+    EXPECT_EQ(galileo.week, 0x053B);
     EXPECT_EQ(galileo.leap_s, 18);
-    EXPECT_EQ(f9.report<NavTimeqzss>().qzss_wno, 0x093B);
-    EXPECT_EQ(f9.report<NavTimeqzss>().qzss_tow, galileo.gal_tow);
-    EXPECT_EQ(f9.report<NavTimeqzss>().f_qzss_tow, -64933);
+    EXPECT_EQ(f9.report<NavTimeqzss>().week, 0x093B);
+    EXPECT_EQ(f9.report<NavTimeqzss>().tow, galileo.tow);
+    EXPECT_EQ(f9.report<NavTimeqzss>().f_tow, -64933);
 }
 
 TEST(NavTimelsMessage, TellsWhereTheNumberIsFrom) {
