@@ -73,10 +73,7 @@ std::string encode(const Gbs& m, const NmeaFormat& format) {
     add_time(s, m.time, format);
     for (const auto& error : {m.latitude, m.longitude, m.altitude})
         add_metres(s, error, 1);
-    if (m.satellite)
-        s.number(*m.satellite, 2);
-    else
-        s.empty();
+    s.number(m.satellite, 2);
     add_decimal(s, m.missed_probability, 1);
     add_metres(s, m.bias, 1);
     add_metres(s, m.bias_deviation, 1);
@@ -118,11 +115,10 @@ std::string encode(const Hdt& m, const NmeaFormat&) {
 
 namespace {
 
-using namespace nmea_encoding;
-
 constexpr std::size_t gsa_slots = 12;
 constexpr std::size_t gsv_slots = 4;
 constexpr std::size_t gsv_most_pages = 9;
+
 // Since version 2.3 (RECEIVER.md 5.2).
 void add_mode(Sentence& sentence, const std::optional<NmeaMode>& mode, const NmeaFormat& format) {
     if (since_2_3(format)) sentence.text(mode ? std::string(1, static_cast<char>(*mode)) : std::string());
@@ -137,10 +133,7 @@ void add_deviation(Sentence& sentence, const std::optional<Metres>& deviation, c
 }
 
 void add_clamped(Sentence& sentence, const std::optional<int>& value, int last, int digits) {
-    if (!value)
-        sentence.empty();
-    else
-        sentence.number(std::clamp(*value, 0, last), digits);
+    sentence.number(value ? std::optional(std::clamp(*value, 0, last)) : std::nullopt, digits);
 }
 
 std::string gga_text(const Gga& m, const NmeaFormat& format, int coordinate_decimals) {
@@ -251,7 +244,7 @@ std::string encode(const Gsv& m, const NmeaFormat& format) {
     s.number(m.pages).number(m.page).number(m.satellites_in_view, 2);
     for (std::size_t i = 0; i < std::min(m.satellites.size(), gsv_slots); ++i) {
         const GsvSatellite& satellite = m.satellites[i];
-        satellite.number ? s.number(*satellite.number, 2) : s.empty(1);
+        s.number(satellite.number, 2);
         add_clamped(s, satellite.elevation_deg, 90, 2);
         add_clamped(s, satellite.azimuth_deg ? std::optional(*satellite.azimuth_deg % 360) : std::nullopt, 359, 3);
         add_clamped(s, satellite.cn0_dbhz, 99, 2);

@@ -16,13 +16,6 @@ using nmea_decoding::FieldReader;
 
 constexpr std::size_t pubx_most_satellites = 99;
 
-void add_whole(Sentence& s, const std::optional<int>& value, int digits) {
-    if (value)
-        s.number(*value, digits);
-    else
-        s.empty();
-}
-
 std::optional<PubxMessage> read_position(FieldReader& r) {
     constexpr std::string_view states[] = {"NF", "DR", "G2", "G3", "D2", "D3", "RK", "TT"};
     PubxPosition m;
@@ -94,7 +87,7 @@ std::string encode(const PubxPosition& m, const NmeaFormat& format) {
     s.decimal(m.altitude.value(), 3).text(m.status);
     s.text(deviation_text(m.horizontal_accuracy)).text(deviation_text(m.vertical_accuracy));
     s.decimal(in_kmh(m.speed), 3).text(course_text(m.course, 2)).decimal(m.down.value(), 3);
-    add_whole(s, m.correction_age_s, 1);
+    s.number(m.correction_age_s, 1);
     for (const double dop : {m.hdop, m.vdop, m.tdop})
         add_dop(s, dop, 2);
     return s.number(m.satellites_used).number(0).number(m.dead_reckoning ? 1 : 0).finish();
@@ -107,9 +100,9 @@ std::string encode(const PubxSatellites& m, const NmeaFormat&) {
     for (std::size_t i = 0; i < shown; ++i) {
         const PubxSatellite& satellite = m.satellites[i];
         s.number(satellite.number).letter(satellite.status);
-        add_whole(s, satellite.azimuth_deg, 3);
-        add_whole(s, satellite.elevation_deg, 2);
-        add_whole(s, satellite.cn0_dbhz, 2);
+        s.number(satellite.azimuth_deg, 3);
+        s.number(satellite.elevation_deg, 2);
+        s.number(satellite.cn0_dbhz, 2);
         s.number(std::clamp(satellite.lock_s, 0, 64), 3);
     }
     return s.finish();
@@ -121,7 +114,7 @@ std::string encode(const PubxTime& m, const NmeaFormat& format) {
     add_time(s, m.time, format);
     s.text(m.date ? date_text(*m.date) : "");
     add_decimal(s, m.utc_tow_s, 2);
-    add_whole(s, m.utc_week, 1);
+    s.number(m.utc_week, 1);
     s.text(fmt::format("{}{}", m.leap_seconds, m.leap_seconds_by_default ? "D" : ""));
     return s.decimal(m.clock_bias_ns, 0).decimal(m.clock_drift_ns_s, 3).number(m.granularity_ns).finish();
 }

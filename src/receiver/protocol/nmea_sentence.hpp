@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,8 @@ public:
     Sentence& letter(char field) { return text({&field, 1}); }
     /// Padded with zeros to at least `digits`.
     Sentence& number(int value, int digits = 1);
+    /// An empty field for nothing.
+    Sentence& number(std::optional<int> value, int digits = 1) { return value ? number(*value, digits) : empty(); }
     Sentence& decimal(double value, int decimals) { return text(fixed_decimals(value, decimals)); }
     /// `count` fields without content.
     Sentence& empty(int count = 1);
