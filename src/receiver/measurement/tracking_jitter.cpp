@@ -40,10 +40,6 @@ Hertz frequency_jitter(const CarrierLoop& loop, CarrierToNoise cn0, double thres
                  (2 * std::numbers::pi * t));
 }
 
-MetresPerSecond range_rate_of(Hertz frequency_error, Hertz carrier) {
-    return MetresPerSecond(speed_of_light / carrier.value() * frequency_error.value());
-}
-
 namespace {
 
 // What the fading of the amplitude leaves of C/N0, and of T·C/N0 in the squaring loss.

@@ -48,9 +48,6 @@ Angle phase_jitter(const CarrierLoop& loop, CarrierToNoise cn0);
 /// @param threshold_factor F: 1 at high C/N0, 2 near the threshold
 Hertz frequency_jitter(const CarrierLoop& loop, CarrierToNoise cn0, double threshold_factor = 1);
 
-/// A frequency error as the range rate that it is taken for.
-MetresPerSecond range_rate_of(Hertz frequency_error, Hertz carrier);
-
 /// Amplitude scintillation index S4 from which the formulas below, and tracking with them, break down.
 inline constexpr double strongest_scintillation = 0.707;
 

@@ -20,25 +20,14 @@ constexpr std::uint32_t ubx_week_ms = 604'800'000;
 
 // u-blox M8 protocol specification, "Satellite Numbering": gnssId and svId.
 std::optional<SatelliteId> ubx_satellite(std::uint8_t gnss_id, std::uint8_t sv_id) {
-    switch (gnss_id) {
-        case 0:
-            return SatelliteId{Constellation::gps, sv_id};
-        case 1:
-            return SatelliteId{Constellation::sbas, sv_id - 100};
-        case 2:
-            return SatelliteId{Constellation::galileo, sv_id};
-        case 3:
-            return SatelliteId{Constellation::beidou, sv_id};
-        case 5:
-            return SatelliteId{Constellation::qzss, sv_id};
-        case 7:
-            return SatelliteId{Constellation::navic, sv_id};
-        case 6:
-            if (sv_id == 255) return std::nullopt;  // not identified yet
-            return SatelliteId{Constellation::glonass, sv_id};
-        default:
-            return std::nullopt;
-    }
+    using enum Constellation;
+    static constexpr std::array<std::optional<Constellation>, 8> systems{gps,          sbas, galileo, beidou,
+                                                                         std::nullopt, qzss, glonass, navic};
+    constexpr std::uint8_t not_identified = 255;  // a satellite of GLONASS
+    if (gnss_id >= systems.size() || !systems[gnss_id]) return std::nullopt;
+    const Constellation system = *systems[gnss_id];
+    if (system == glonass && sv_id == not_identified) return std::nullopt;
+    return SatelliteId{system, system == sbas ? sv_id - 100 : sv_id};
 }
 
 FixType ubx_fix_type(unsigned type, unsigned flags, unsigned carrier) {
