@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "base/core/file_descriptor.hpp"
 #include "run/output/run_output.hpp"
 #include "unit/output/epochs.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

@@ -14,6 +14,8 @@
 #include <csignal>
 #include <cstring>
 
+#include "base/core/file_descriptor.hpp"
+
 namespace skyloop::inline base {
 namespace {
 
@@ -23,21 +25,12 @@ constexpr int look_every_ms = 20;
 constexpr std::size_t longest_line = 65536;
 
 struct Pipe {
-    int read = -1, write = -1;
+    FileDescriptor read, write;
     Pipe() {
         std::array<int, 2> ends{};
-        if (::pipe2(ends.data(), O_CLOEXEC) == 0) read = ends[0], write = ends[1];
-    }
-    ~Pipe() { close_read(), close_write(); }
-    Pipe(const Pipe&) = delete;
-    Pipe& operator=(const Pipe&) = delete;
-    void close_read() { close_end(read); }
-    void close_write() { close_end(write); }
-
-private:
-    static void close_end(int& end) {
-        if (end >= 0) ::close(end);
-        end = -1;
+        if (::pipe2(ends.data(), O_CLOEXEC) != 0) return;
+        read = FileDescriptor(ends[0]);
+        write = FileDescriptor(ends[1]);
     }
 };
 
@@ -100,8 +93,8 @@ int RunningProcess::spawn(std::vector<char*>& arguments, std::vector<char*>& env
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawnattr_init(&attributes);
     ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_adddup2(&actions, output_.write, STDOUT_FILENO);
-    ::posix_spawn_file_actions_adddup2(&actions, errors_.write, STDERR_FILENO);
+    ::posix_spawn_file_actions_adddup2(&actions, output_.write.value(), STDOUT_FILENO);
+    ::posix_spawn_file_actions_adddup2(&actions, errors_.write.value(), STDERR_FILENO);
     sigset_t none, standard;
     ::sigemptyset(&none);
     ::sigemptyset(&standard);
@@ -122,7 +115,7 @@ int RunningProcess::spawn(std::vector<char*>& arguments, std::vector<char*>& env
 Result<void> RunningProcess::start() {
     if (request_.command.empty() || request_.command.front().empty())
         return fail(ErrorCode::outside, "no program was named; expected a command");
-    if (output_.read < 0 || errors_.read < 0)
+    if (!output_.read.open() || !errors_.read.open())
         return fail(ErrorCode::outside,
                     fmt::format("no pipe for '{}': {}", request_.command.front(), std::strerror(errno)));
     std::vector<std::string> command = request_.command;
@@ -133,9 +126,9 @@ Result<void> RunningProcess::start() {
         return fail(ErrorCode::outside,
                     fmt::format("cannot start '{}': {}", request_.command.front(), std::strerror(error)));
     if (request_.group) request_.group(child_);
-    output_.close_write();
-    errors_.close_write();
-    for (const int end : {output_.read, errors_.read})
+    output_.write = FileDescriptor();
+    errors_.write = FileDescriptor();
+    for (const int end : {output_.read.value(), errors_.read.value()})
         ::fcntl(end, F_SETFL, ::fcntl(end, F_GETFL) | O_NONBLOCK);
     return {};
 }
@@ -162,19 +155,19 @@ ProcessOutcome RunningProcess::wait() {
 }
 
 void RunningProcess::read_outputs(int patience_ms) {
-    std::array<pollfd, 2> polled{{{output_.read, POLLIN, 0}, {errors_.read, POLLIN, 0}}};
+    std::array<pollfd, 2> polled{{{output_.read.value(), POLLIN, 0}, {errors_.read.value(), POLLIN, 0}}};
     ::poll(polled.data(), polled.size(), patience_ms);
     if ((polled[0].revents & (POLLIN | POLLHUP)) != 0 && !read_some(output_, outcome_.output, true))
-        output_.close_read();
+        output_.read = FileDescriptor();
     if ((polled[1].revents & (POLLIN | POLLHUP)) != 0 && !read_some(errors_, outcome_.errors, false))
-        errors_.close_read();
+        errors_.read = FileDescriptor();
 }
 
 // Reads at most what a pipe holds, so that a flood does not keep the clock from being looked at. False at its end.
 bool RunningProcess::read_some(Pipe& pipe, std::string& kept, bool lines) {
     std::array<char, 65536> bytes{};
     for (int round = 0; round < 16 && !outcome_.enough; ++round) {
-        const ssize_t count = ::read(pipe.read, bytes.data(), bytes.size());
+        const ssize_t count = ::read(pipe.read.value(), bytes.data(), bytes.size());
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) return errno == EAGAIN;
         if (count == 0) return false;

@@ -58,23 +58,22 @@ Result<std::unique_ptr<WatchdogProcess>> WatchdogProcess::start(const char* name
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
         return fail(ErrorCode::outside, std::strerror(errno));
+    FileDescriptor ours(ends[0]);
+    const FileDescriptor theirs(ends[1]);
     const pid_t child = ::fork();
-    if (child == 0) stand_by(ends[1], name, work);
-    const int reason = errno;
-    ::close(ends[1]);
-    if (child > 0) return std::unique_ptr<WatchdogProcess>(new WatchdogProcess(child, ends[0]));
-    ::close(ends[0]);
-    return fail(ErrorCode::outside, std::strerror(reason));
+    if (child == 0) stand_by(theirs.value(), name, work);
+    if (child > 0) return std::unique_ptr<WatchdogProcess>(new WatchdogProcess(child, std::move(ours)));
+    return fail(ErrorCode::outside, std::strerror(errno));
 }
 
 WatchdogProcess::~WatchdogProcess() {
-    ::close(socket_);
+    socket_ = FileDescriptor();
     while (::waitpid(child_, nullptr, 0) < 0 && errno == EINTR) {
     }
 }
 
 bool WatchdogProcess::tell(const void* record, std::size_t size) const {
-    return ::send(socket_, record, size, MSG_NOSIGNAL) == static_cast<ssize_t>(size);
+    return ::send(socket_.value(), record, size, MSG_NOSIGNAL) == static_cast<ssize_t>(size);
 }
 
 bool hear_record(int socket, void* record, std::size_t size) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/process.hpp"
 #include "base/core/result.hpp"
 
@@ -32,9 +33,9 @@ public:
     bool tell(const void* record, std::size_t size) const;
 
 private:
-    WatchdogProcess(int child, int socket) : child_(child), socket_(socket) {}
+    WatchdogProcess(int child, FileDescriptor socket) : child_(child), socket_(std::move(socket)) {}
     int child_;
-    int socket_;
+    FileDescriptor socket_;
 };
 
 /// The next record of a socket of WatchdogProcess; false when the program is gone.

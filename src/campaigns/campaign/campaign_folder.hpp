@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
 #include "campaigns/campaign/campaign_plan.hpp"
 #include "campaigns/campaign/campaign_run.hpp"
 #include "run/emulator/data_folders.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop::inline campaigns {
 

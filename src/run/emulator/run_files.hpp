@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "base/core/bytes.hpp"
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
 #include "base/time/gps_time.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop::inline run {
 

@@ -1,55 +1,19 @@
-// A port of a hub that the kernel leaves alone.
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <string>
 #include <thread>
 #include <utility>
 
+#include "base/core/file_descriptor.hpp"
 #include "detail/switch_parts.hpp"
 #include "wire/usb/hub_port_power.hpp"
 
 namespace skyloop::inline wire {
-
-/// While it lives the kernel's hub driver neither switches the port's power on again, as it otherwise does where what
-/// was plugged in has gone, nor gives a driver to what appears there (USBDEVFS_CLAIM_PORT). The kernel takes it back
-/// from a process that ends. libusb has no call for it, so that it has a file of its own.
-class HubPortClaim {
-public:
-    /// @param node of the hub, "/dev/bus/usb/001/004". Null: the kernel does not allow it, or somebody else has it.
-    static std::unique_ptr<HubPortClaim> take(const std::string& node, int port);
-    ~HubPortClaim();
-    HubPortClaim(const HubPortClaim&) = delete;
-    HubPortClaim& operator=(const HubPortClaim&) = delete;
-
-private:
-    HubPortClaim(int file, unsigned port) : file_(file), port_(port) {}
-    int file_;
-    unsigned port_;
-};
-
-std::unique_ptr<HubPortClaim> HubPortClaim::take(const std::string& node, int port) {
-    const int file = ::open(node.c_str(), O_RDWR | O_CLOEXEC);
-    if (file < 0) return nullptr;
-    auto number = static_cast<unsigned>(port);
-    if (::ioctl(file, USBDEVFS_CLAIM_PORT, &number) == 0)
-        return std::unique_ptr<HubPortClaim>(new HubPortClaim(file, number));
-    ::close(file);
-    return nullptr;
-}
-
-HubPortClaim::~HubPortClaim() {
-    ::ioctl(file_, USBDEVFS_RELEASE_PORT, &port_);
-    ::close(file_);
-}
-
 namespace {
 
 using HubClock = std::chrono::steady_clock;  // the kernel's hub driver lives by the host's time
@@ -62,20 +26,21 @@ public:
     explicit HubSwitch(HubPort port) : port_(std::move(port)) {}
     // A cut outlives its switch only where the kernel has been kept off until it has looked.
     ~HubSwitch() override {
-        if (cut_since_ && claim_) std::this_thread::sleep_until(*cut_since_ + until_kernel_has_looked);
+        if (cut_since_ && claim_.open()) std::this_thread::sleep_until(*cut_since_ + until_kernel_has_looked);
+        release_port();
     }
 
     Result<void> cut() override {
         // Before what is plugged in goes. Without it, on old kernels or where another program has it, the port may come
         // back by itself, which is seen when the cut ends.
-        if (!claim_) claim_ = HubPortClaim::take(port_.hub().node, port_.number());
+        if (!claim_.open()) claim_port();
         auto done = set(PowerState::cut);
         if (done) cut_since_ = HubClock::now();
         return done;
     }
     Result<void> restore() override {
         cut_since_.reset();
-        claim_.reset();  // what comes back wants its driver
+        release_port();  // what comes back wants its driver
         return set(PowerState::on);
     }
     Result<std::optional<PowerState>> state() override {
@@ -96,8 +61,22 @@ private:
                                                         description(), wanted == PowerState::on ? "off" : "on"));
         return {};
     }
+    // From now on the kernel's hub driver neither switches the port's power on again, as it otherwise does where what
+    // was plugged in has gone, nor gives a driver to what appears there (libusb has no call for it). The kernel takes
+    // the claim back from a process that ends; it may not allow it, or somebody else has it.
+    void claim_port() {
+        auto number = static_cast<unsigned>(port_.number());
+        claim_ = FileDescriptor(::open(port_.hub().node.c_str(), O_RDWR | O_CLOEXEC));
+        if (::ioctl(claim_.value(), USBDEVFS_CLAIM_PORT, &number) != 0) claim_ = FileDescriptor();
+    }
+    void release_port() {
+        auto number = static_cast<unsigned>(port_.number());
+        if (claim_.open()) ::ioctl(claim_.value(), USBDEVFS_RELEASE_PORT, &number);
+        claim_ = FileDescriptor();
+    }
+
     HubPort port_;
-    std::unique_ptr<HubPortClaim> claim_;  // while the power is off
+    FileDescriptor claim_;  // of the port, by the node of its hub, while the power is off
     std::optional<HubClock::time_point> cut_since_;
 };
 

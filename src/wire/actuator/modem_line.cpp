@@ -9,8 +9,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/core/file_descriptor.hpp"
 #include "detail/switch_parts.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop::inline wire {
 namespace {

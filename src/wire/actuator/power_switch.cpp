@@ -1,61 +1,16 @@
-// What keeps two runs from one switch.
 #include "wire/actuator/power_switch.hpp"
 
 #include <fmt/format.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstddef>
-#include <memory>
-#include <string>
 #include <utility>
 
 #include "base/core/bytes.hpp"
-#include "base/core/result.hpp"
 #include "base/core/threads.hpp"
 
 namespace skyloop::inline wire {
-
-/// A name that one switch of the machine has at a time; the kernel takes it back however a program ends. It is an
-/// abstract socket, which needs no folder that all users may write to, and leaves nothing behind. Containers with a
-/// network of their own do not see each other's.
-class ActuatorLock {
-public:
-    /// Fails with `outside` when somebody has it. Null: the system has no such names to give.
-    static Result<std::unique_ptr<ActuatorLock>> take(const std::string& name);
-    ~ActuatorLock();
-    ActuatorLock(const ActuatorLock&) = delete;
-    ActuatorLock& operator=(const ActuatorLock&) = delete;
-
-private:
-    explicit ActuatorLock(int socket) : socket_(socket) {}
-    int socket_;
-};
-
-Result<std::unique_ptr<ActuatorLock>> ActuatorLock::take(const std::string& name) {
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    // The zero that abstract names begin with stays in front.
-    const std::string text = fmt::format("skyloop/power/{:016x}", fnv1a_64(name));
-    std::copy(text.begin(), text.end(), address.sun_path + 1);
-    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
-    const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (socket < 0) return nullptr;
-    if (::bind(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0)
-        return std::unique_ptr<ActuatorLock>(new ActuatorLock(socket));
-    const bool taken = errno == EADDRINUSE;
-    ::close(socket);
-    if (!taken) return nullptr;
-    return fail(ErrorCode::outside,
-                fmt::format("{} is switched by another run already, or by another receiver of this one", name));
-}
-
-ActuatorLock::~ActuatorLock() { ::close(socket_); }
-
 namespace {
 
 // Relays click at the pace of the machine's clock, whatever that of the simulation is.
@@ -77,11 +32,7 @@ Result<std::unique_ptr<PowerSwitch>> PowerSwitch::start(Parts parts) {
     with_signals_held_back([&] { opened = one->open(); });
     if (!opened) return fail(opened.error());
     one->description_ = one->actuator_->description();
-    if (const std::string name = one->actuator_->lock_name(); !name.empty()) {
-        auto lock = ActuatorLock::take(name);
-        if (!lock) return fail(lock.error());
-        one->lock_ = std::move(*lock);
-    }
+    if (const auto alone = one->lock(); !alone) return fail(alone.error());
     if (const auto restored = one->actuator_->restore(); !restored) return fail(restored.error());
     with_signals_held_back([&] { one->thread_ = std::thread([self = one.get()] { self->work(); }); });
     return one;
@@ -186,6 +137,16 @@ Result<void> PowerSwitch::open() {
         actuator_->tell_process_groups(
             [this](std::optional<int> group) { parts_.watchdog->note_group(parts_.ward, group); });
     return {};
+}
+
+// Where the system has no such names to give nobody is kept off.
+Result<void> PowerSwitch::lock() {
+    const std::string name = actuator_->lock_name();
+    if (name.empty()) return {};
+    lock_ = claim_name(fmt::format("skyloop/power/{:016x}", fnv1a_64(name)));
+    if (lock_.open() || errno != EADDRINUSE) return {};
+    return fail(ErrorCode::outside,
+                fmt::format("{} is switched by another run already, or by another receiver of this one", name));
 }
 
 Result<void> PowerSwitch::try_once(PowerState wanted) {

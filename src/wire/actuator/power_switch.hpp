@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
 #include "wire/actuator/actuator.hpp"
 #include "wire/actuator/power_watchdog.hpp"
@@ -27,8 +28,6 @@ struct PowerCounts {
 
 /// How a switch comes by its actuator, and by a fresh one when the first has failed.
 using OpenActuator = std::function<Result<std::unique_ptr<Actuator>>()>;
-
-class ActuatorLock;
 
 /// Switches in a thread of its own, in the order in which it was asked.
 ///
@@ -62,6 +61,7 @@ public:
 private:
     explicit PowerSwitch(Parts parts);
     [[nodiscard]] Result<void> open();
+    [[nodiscard]] Result<void> lock();
     void work();
     void follow(PowerState wanted);
     void look_at_cut();
@@ -72,7 +72,7 @@ private:
 
     Parts parts_;
     std::string description_;
-    std::unique_ptr<ActuatorLock> lock_;
+    FileDescriptor lock_;
     std::unique_ptr<Actuator> actuator_;  // of the thread alone once that runs; null: to be opened anew
     bool known_on_ = true;                // likewise
     std::uint64_t followed_ = 0;          // likewise: orders, that which is being carried out among them

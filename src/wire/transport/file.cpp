@@ -13,14 +13,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "wire/transport/file_descriptor.hpp"
-
 namespace skyloop::inline wire {
-
-FileDescriptor::~FileDescriptor() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-}
-
 namespace {
 
 // While it lives, writing to a pipe whose reader has gone is an error and not the end of the program.

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
-#include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/transport.hpp"
 
 namespace skyloop::inline wire {

@@ -5,9 +5,7 @@
 #include <poll.h>
 #include <sys/inotify.h>
 #include <sys/ioctl.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -56,21 +54,13 @@ short poll_master(int master) {
     return state.revents;
 }
 
-// A name that one program at a time has, and that goes with it however it ends: a socket that has no file. It names the
-// folder itself, since other names of it, or another folder of the same name in a container, may be there too.
-// Closed: another program has it, or the system knows no such names (errno).
+// As claim_name() of one that names the folder itself, since other names of it, or another folder of the same name in a
+// container, may be there too.
 FileDescriptor claim_of(const fs::path& link) {
     struct stat folder {};
     if (::stat(link.parent_path().c_str(), &folder) != 0) return {};
-    FileDescriptor claim(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-    const std::string name = fmt::format("skyloop pty {:x}:{:x} {:x}", folder.st_dev, folder.st_ino,
-                                         std::hash<std::string>{}(link.filename().string()));
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    std::copy(name.begin(), name.end(), address.sun_path + 1);  // the zero before it: no file
-    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-    if (::bind(claim.value(), reinterpret_cast<const sockaddr*>(&address), size) != 0) return {};
-    return claim;
+    return claim_name(fmt::format("skyloop pty {:x}:{:x} {:x}", folder.st_dev, folder.st_ino,
+                                  std::hash<std::string>{}(link.filename().string())));
 }
 
 // As a run that died has left its link: what it led to is gone, or is another program's by now.
@@ -118,7 +108,6 @@ Result<void> PtyTransport::publish(const fs::path& link) {
     if (!fs::is_directory(target.parent_path(), error))
         return fail(ErrorCode::outside,
                     fmt::format("{}: the folder {} does not exist", link.string(), target.parent_path().string()));
-    errno = 0;
     claim_ = claim_of(target);
     if (!claim_.open() && errno == EADDRINUSE)
         return fail(ErrorCode::outside,

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
-#include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/transport.hpp"
 
 namespace skyloop::inline wire {

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
-#include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/transport.hpp"
 
 namespace skyloop::inline wire {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
 #include "base/core/threads.hpp"
-#include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/tcp.hpp"
 #include "wire/transport/transport.hpp"
 

@@ -9,10 +9,10 @@
 
 #include <thread>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/threads.hpp"
 #include "run/emulator/assembly.hpp"
 #include "support/run_parts.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

@@ -9,9 +9,9 @@
 #include <iostream>
 #include <thread>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/threads.hpp"
 #include "run/feed/truth_feed.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

@@ -14,9 +14,9 @@
 #include <string>
 #include <thread>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/threads.hpp"
 #include "dialect_bytes.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

@@ -20,8 +20,8 @@
 #include <memory>
 #include <string>
 
+#include "base/core/file_descriptor.hpp"
 #include "temporary_folder.hpp"
-#include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/serial.hpp"
 
 namespace skyloop::test {

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "wire/transport/file_descriptor.hpp"
+#include "base/core/file_descriptor.hpp"
 
 namespace skyloop::test {
 

@@ -11,8 +11,8 @@
 #include <filesystem>
 #include <iterator>
 
+#include "base/core/file_descriptor.hpp"
 #include "usbip_host.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop {
 namespace {

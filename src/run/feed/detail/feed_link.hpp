@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
 #include "feed_hearer.hpp"
 #include "run/feed/truth_feed.hpp"
-#include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/tcp.hpp"
 
 namespace skyloop::inline run {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "base/core/file_descriptor.hpp"
 #include "line_settings.hpp"
-#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop::inline wire {
 

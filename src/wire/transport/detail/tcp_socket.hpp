@@ -10,8 +10,8 @@
 #include <string>
 
 #include "base/core/bytes.hpp"
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
-#include "wire/transport/file_descriptor.hpp"
 #include "wire/transport/tcp.hpp"
 
 namespace skyloop::inline wire {
