@@ -1,4 +1,4 @@
-/// Reading text files.
+/// Reading text files, and what is in a folder.
 /// Writing small files whole or not at all.
 /// Making folders, or saying why not.
 /// Files that are read and must not be written over.
@@ -36,6 +36,9 @@ Result<std::string> read_uncompressed(const std::filesystem::path& path, std::si
 
 /// The first line of a small file, as those of sysfs and procfs are; empty when there is none.
 std::string first_line_of(const std::filesystem::path& file);
+
+/// The names in a folder, sorted; none when it is not there, or goes while it is read.
+std::vector<std::string> names_in(const std::filesystem::path& folder);
 
 /// Puts `content` into a file in one step: whoever reads meets the old file or the whole new one, also where several
 /// write it at once or the program is killed. Of a link it is the file that the link leads to; a device or a pipe is

@@ -25,12 +25,7 @@ std::size_t end_of_cell(std::string_view line, std::string_view separators) {
 
 }  // namespace
 
-std::string_view trimmed_cell(std::string_view text) {
-    constexpr std::string_view around = " \t\r\n\"";
-    const std::size_t first = text.find_first_not_of(around);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(around) - first + 1);
-}
+std::string_view trimmed_cell(std::string_view text) { return trimmed(text, " \t\r\n\""); }
 
 char separator_in(std::string_view line) {
     for (const char candidate : {',', ';', '\t'})
@@ -69,52 +64,32 @@ std::optional<std::string> width_mistake(const LineCells& cells, std::size_t nam
 namespace {
 
 struct ColumnUnit {
-    std::string_view name;
     Measured measured;
     double scale;
+    std::array<std::string_view, 5> names;
 };
 
 constexpr double unit_foot = 0.3048, unit_knot = 1852.0 / 3600, unit_mile_per_hour = 0.44704,
                  unit_radian = 180 / std::numbers::pi;
 
-using Unit = Measured;
-constexpr std::array column_units{ColumnUnit{"s", Unit::time, 1},
-                                  ColumnUnit{"sec", Unit::time, 1},
-                                  ColumnUnit{"second", Unit::time, 1},
-                                  ColumnUnit{"seconds", Unit::time, 1},
-                                  ColumnUnit{"ms", Unit::time, 1e-3},
-                                  ColumnUnit{"millisecond", Unit::time, 1e-3},
-                                  ColumnUnit{"milliseconds", Unit::time, 1e-3},
-                                  ColumnUnit{"us", Unit::time, 1e-6},
-                                  ColumnUnit{"ns", Unit::time, 1e-9},
-                                  ColumnUnit{"utc", Unit::calendar, 1},
-                                  ColumnUnit{"deg", Unit::angle, 1},
-                                  ColumnUnit{"degree", Unit::angle, 1},
-                                  ColumnUnit{"degrees", Unit::angle, 1},
-                                  ColumnUnit{"\xC2\xB0", Unit::angle, 1},
-                                  ColumnUnit{"rad", Unit::angle, unit_radian},
-                                  ColumnUnit{"e7", Unit::angle, 1e-7},
-                                  ColumnUnit{"m", Unit::length, 1},
-                                  ColumnUnit{"meter", Unit::length, 1},
-                                  ColumnUnit{"meters", Unit::length, 1},
-                                  ColumnUnit{"metre", Unit::length, 1},
-                                  ColumnUnit{"metres", Unit::length, 1},
-                                  ColumnUnit{"km", Unit::length, 1000},
-                                  ColumnUnit{"cm", Unit::length, 1e-2},
-                                  ColumnUnit{"mm", Unit::length, 1e-3},
-                                  ColumnUnit{"ft", Unit::length, unit_foot},
-                                  ColumnUnit{"feet", Unit::length, unit_foot},
-                                  ColumnUnit{"m/s", Unit::speed, 1},
-                                  ColumnUnit{"mps", Unit::speed, 1},
-                                  ColumnUnit{"km/h", Unit::speed, 1 / 3.6},
-                                  ColumnUnit{"kmh", Unit::speed, 1 / 3.6},
-                                  ColumnUnit{"kph", Unit::speed, 1 / 3.6},
-                                  ColumnUnit{"kn", Unit::speed, unit_knot},
-                                  ColumnUnit{"kt", Unit::speed, unit_knot},
-                                  ColumnUnit{"knots", Unit::speed, unit_knot},
-                                  ColumnUnit{"mph", Unit::speed, unit_mile_per_hour},
-                                  ColumnUnit{"ft/s", Unit::speed, unit_foot},
-                                  ColumnUnit{"fps", Unit::speed, unit_foot}};
+constexpr std::array column_units{ColumnUnit{Measured::time, 1, {"s", "sec", "second", "seconds"}},
+                                  ColumnUnit{Measured::time, 1e-3, {"ms", "millisecond", "milliseconds"}},
+                                  ColumnUnit{Measured::time, 1e-6, {"us"}},
+                                  ColumnUnit{Measured::time, 1e-9, {"ns"}},
+                                  ColumnUnit{Measured::calendar, 1, {"utc"}},
+                                  ColumnUnit{Measured::angle, 1, {"deg", "degree", "degrees", "\xC2\xB0"}},
+                                  ColumnUnit{Measured::angle, unit_radian, {"rad"}},
+                                  ColumnUnit{Measured::angle, 1e-7, {"e7"}},
+                                  ColumnUnit{Measured::length, 1, {"m", "meter", "meters", "metre", "metres"}},
+                                  ColumnUnit{Measured::length, 1000, {"km"}},
+                                  ColumnUnit{Measured::length, 1e-2, {"cm"}},
+                                  ColumnUnit{Measured::length, 1e-3, {"mm"}},
+                                  ColumnUnit{Measured::length, unit_foot, {"ft", "feet"}},
+                                  ColumnUnit{Measured::speed, 1, {"m/s", "mps"}},
+                                  ColumnUnit{Measured::speed, 1 / 3.6, {"km/h", "kmh", "kph"}},
+                                  ColumnUnit{Measured::speed, unit_knot, {"kn", "kt", "knots"}},
+                                  ColumnUnit{Measured::speed, unit_mile_per_hour, {"mph"}},
+                                  ColumnUnit{Measured::speed, unit_foot, {"ft/s", "fps"}}};
 
 std::string lowered_name(std::string_view text) {
     std::string lower = lower_case(text);
@@ -123,13 +98,7 @@ std::string lowered_name(std::string_view text) {
     return lower;
 }
 
-std::string without_underscores(std::string_view text) {
-    while (text.ends_with('_'))
-        text.remove_suffix(1);
-    while (text.starts_with('_'))
-        text.remove_prefix(1);
-    return std::string(text);
-}
+std::string without_underscores(std::string_view text) { return std::string(trimmed(text, "_")); }
 
 }  // namespace
 
@@ -150,10 +119,11 @@ ColumnName column_name(std::string_view text) {
 }
 
 std::optional<double> unit_scale(std::string_view unit, Measured measured) {
-    const auto* const known = std::find_if(column_units.begin(), column_units.end(), [&](const ColumnUnit& one) {
-        return one.name == unit && one.measured == measured;
-    });
-    return known == column_units.end() ? std::nullopt : std::optional(known->scale);
+    if (unit.empty()) return std::nullopt;
+    for (const ColumnUnit& known : column_units)
+        if (known.measured == measured && std::find(known.names.begin(), known.names.end(), unit) != known.names.end())
+            return known.scale;
+    return std::nullopt;
 }
 
 }  // namespace skyloop::inline base

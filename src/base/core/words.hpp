@@ -1,11 +1,12 @@
 /// Letters A to Z and a to z; every other byte stays as it is, whatever the locale.
-/// Where the characters of a UTF-8 text end.
+/// Texts without what stands around them, and where the characters of a UTF-8 text end.
 /// Texts of files, as a terminal may have them.
 /// Words for whoever reads standard error.
 /// What a user may have meant by a word that is not known.
 /// Words for a shell.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <string>
@@ -29,6 +30,12 @@ inline std::string upper_case(std::string_view text) {
     for (char& c : upper)
         c = upper_case(c);
     return upper;
+}
+
+/// Without any of the characters `around` at both ends.
+constexpr std::string_view trimmed(std::string_view text, std::string_view around = " ") {
+    text.remove_prefix(std::min(text.find_first_not_of(around), text.size()));
+    return text.substr(0, text.find_last_not_of(around) + 1);
 }
 
 /// The length in bytes of the UTF-8 character at the start of `text`, 0 when it is none or cut (RFC 3629, section 4).

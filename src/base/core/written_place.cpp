@@ -44,11 +44,6 @@ std::string with_plain_marks(std::string text) {
     return text;
 }
 
-void drop_blanks(std::string_view& text) {
-    text.remove_prefix(std::min(text.find_first_not_of(place_blanks), text.size()));
-    text = text.substr(0, text.find_last_not_of(place_blanks) + 1);
-}
-
 // Takes the letters at one end away. False: they are of no hemisphere of this coordinate, or a second such word.
 bool take_letters(std::string_view& text, bool front, Coordinate which, std::optional<double>& sign) {
     const std::size_t count =
@@ -59,7 +54,7 @@ bool take_letters(std::string_view& text, bool front, Coordinate which, std::opt
     if (sign) return false;
     sign = hemisphere_sign(letters, which);
     front ? text.remove_prefix(count) : text.remove_suffix(count);
-    drop_blanks(text);
+    text = trimmed(text, place_blanks);
     return sign.has_value();
 }
 
@@ -80,9 +75,9 @@ std::optional<double> sexagesimal_degrees(std::string_view text) {
         decimals = text.substr(0, length).find('.') != std::string_view::npos;
         degrees += value / parts.at(i);
         text.remove_prefix(length);
-        drop_blanks(text);
+        text = trimmed(text, place_blanks);
         if (!text.empty() && (text.front() == marks[i] || text.front() == ':')) text.remove_prefix(1);
-        drop_blanks(text);
+        text = trimmed(text, place_blanks);
     }
     return degrees;
 }
@@ -132,8 +127,7 @@ std::optional<double> hemisphere_sign(std::string_view text, Coordinate which) {
 
 std::optional<double> written_degrees(std::string_view text, Coordinate which) {
     const std::string plain = with_plain_marks(lower_case(text));
-    std::string_view rest = plain;
-    drop_blanks(rest);
+    std::string_view rest = trimmed(plain, place_blanks);
     std::optional<double> letter;
     if (!take_letters(rest, true, which, letter) || !take_letters(rest, false, which, letter)) return std::nullopt;
     const bool minus = rest.starts_with('-');

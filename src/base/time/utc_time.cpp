@@ -21,7 +21,9 @@ Nanoseconds since_gps_epoch(int year, unsigned month, unsigned day) {
     return days - gps_epoch;
 }
 
-UtcTime calendar(Nanoseconds since_epoch) {
+// Of a count without leap seconds.
+template <class Duration>
+UtcTime calendar(Duration since_epoch) {
     const auto days = std::chrono::floor<std::chrono::days>(since_epoch);
     const std::chrono::year_month_day date(gps_epoch + days);
     const std::chrono::hh_mm_ss clock(since_epoch - days);
@@ -112,12 +114,12 @@ bool read_date(std::string_view& text, UtcTime& time, bool& marked) {
     return read_number(text, 2, time.month) && (!marked || read_mark(text, "-")) && read_number(text, 2, time.day);
 }
 
-// Hours and minutes, and seconds where there are some.
-bool read_clock(std::string_view& text, UtcTime& time, bool marked) {
+// Hours and minutes, and seconds, which may be left out where they are not `needed`.
+bool read_clock(std::string_view& text, UtcTime& time, bool marked, bool needed) {
     if (!read_number(text, 2, time.hour) || (marked && !read_mark(text, ":")) || !read_number(text, 2, time.minute))
         return false;
     const bool seconds = marked ? read_mark(text, ":") : !text.empty() && text.front() >= '0' && text.front() <= '9';
-    return !seconds || (read_number(text, 2, time.second) && read_fraction(text, time.nanosecond));
+    return seconds ? read_number(text, 2, time.second) && read_fraction(text, time.nanosecond) : !needed;
 }
 
 tl::unexpected<Error> no_utc_time(std::string_view text) {
@@ -214,14 +216,10 @@ std::int64_t modified_julian_day(const UtcTime& utc) {
 
 Result<UtcTime> parse_utc(std::string_view text) {
     std::string_view rest = text;
-    unsigned year = 0;
     UtcTime t;
-    const bool read = read_number(rest, 4, year) && read_mark(rest, "-") && read_number(rest, 2, t.month) &&
-                      read_mark(rest, "-") && read_number(rest, 2, t.day) && read_mark(rest, "T ") &&
-                      read_number(rest, 2, t.hour) && read_mark(rest, ":") && read_number(rest, 2, t.minute) &&
-                      read_mark(rest, ":") && read_number(rest, 2, t.second) && read_fraction(rest, t.nanosecond);
+    bool marked = false;
+    const bool read = read_date(rest, t, marked) && marked && read_mark(rest, "T ") && read_clock(rest, t, true, true);
     if (read) read_mark(rest, "Z");
-    t.year = static_cast<int>(year);
     if (!read || !rest.empty() || !is_calendar_time(t)) return no_utc_time(text);
     return t;
 }
@@ -231,7 +229,7 @@ Result<UtcTime> parse_instant(std::string_view text) {
     UtcTime local;
     bool marked = false;
     if (!read_date(rest, local, marked)) return no_utc_time(text);
-    if (!rest.empty() && !(read_mark(rest, "T ") && read_clock(rest, local, marked))) return no_utc_time(text);
+    if (!rest.empty() && !(read_mark(rest, "T ") && read_clock(rest, local, marked, false))) return no_utc_time(text);
     const auto zone = zone_minutes(rest);
     // A zone's leap second is not at its midnight.
     UtcTime on_calendar = local;
@@ -256,17 +254,11 @@ std::optional<int> zone_minutes(std::string_view text) {
 UtcTime utc_of_local(const UtcTime& local, int minutes) {
     using namespace std::chrono;
     const sys_days day = year_month_day(year(local.year), month(local.month), std::chrono::day(local.day));
-    const auto utc = day + hours(local.hour) + std::chrono::minutes(static_cast<int>(local.minute) - minutes);
-    const auto midnight = floor<days>(utc);
-    const year_month_day date(midnight);
-    const hh_mm_ss clock(utc - midnight);
-    return {static_cast<int>(date.year()),
-            static_cast<unsigned>(date.month()),
-            static_cast<unsigned>(date.day()),
-            static_cast<unsigned>(clock.hours().count()),
-            static_cast<unsigned>(clock.minutes().count()),
-            local.second,
-            local.nanosecond};
+    UtcTime utc = calendar(day - gps_epoch + hours(local.hour) +
+                           std::chrono::minutes(static_cast<int>(local.minute) - minutes));
+    utc.second = local.second;
+    utc.nanosecond = local.nanosecond;
+    return utc;
 }
 
 UtcTime midnight_of(const UtcTime& day, int days_later) {

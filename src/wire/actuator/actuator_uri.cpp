@@ -31,38 +31,20 @@ std::optional<ActiveLevel> take_level(std::string_view& rest) {
     return std::nullopt;
 }
 
-struct Output {
-    UsbAddress board;
-    int number = 0;
-    ActiveLevel active = ActiveLevel::cuts;
-};
-
-// VID:PID…/N[,active=…]
-Result<Output> parse_output(std::string_view uri, std::string_view rest, std::array<int, 2> range) {
+// VID:PID…/N[,active=…], of a relay or a pin.
+template <class Address, int least, int most>
+Result<ActuatorUri> parse_output(std::string_view uri, std::string_view rest) {
     const std::string expected =
         fmt::format("{}VID:PID[:SERIAL|@PORT_PATH]/N[,active=cut|,active=power] with N from {} to {}",
-                    uri.substr(0, uri.find(':') + 1), range[0], range[1]);
+                    uri.substr(0, uri.find(':') + 1), least, most);
     const auto active = take_level(rest);
     const std::size_t slash = rest.rfind('/');
     if (!active || slash == std::string_view::npos) return not_understood(uri, expected);
-    const std::string_view digits = rest.substr(slash + 1);
-    const auto number = number_in<int>(digits);
-    if (!number || *number < range[0] || *number > range[1]) return not_understood(uri, expected);
+    const auto number = number_in<int>(rest.substr(slash + 1));
+    if (!number || *number < least || *number > most) return not_understood(uri, expected);
     auto board = parse_usb_address(rest.substr(0, slash));
     if (!board) return fail(ErrorCode::usage, fmt::format("power '{}': {}", uri, board.error().message));
-    return Output{std::move(*board), *number, *active};
-}
-
-Result<ActuatorUri> parse_relay(std::string_view uri, std::string_view rest) {
-    auto output = parse_output(uri, rest, {1, 8});
-    if (!output) return fail(output.error());
-    return RelayAddress{std::move(output->board), output->number, output->active};
-}
-
-Result<ActuatorUri> parse_gpio(std::string_view uri, std::string_view rest) {
-    auto output = parse_output(uri, rest, {0, 3});
-    if (!output) return fail(output.error());
-    return GpioAddress{std::move(output->board), output->number, output->active};
+    return Address{std::move(*board), *number, *active};
 }
 
 Result<ActuatorUri> parse_hub(std::string_view uri, std::string_view rest) {
@@ -178,8 +160,8 @@ bool may_be_one_switch(const ActuatorUri& a, const ActuatorUri& b) {
 
 Result<ActuatorUri> parse_actuator_uri(std::string_view uri) {
     using Parse = Result<ActuatorUri> (*)(std::string_view, std::string_view);
-    constexpr std::array<std::pair<std::string_view, Parse>, 5> kinds{{{"relay:", parse_relay},
-                                                                       {"gpio:", parse_gpio},
+    constexpr std::array<std::pair<std::string_view, Parse>, 5> kinds{{{"relay:", parse_output<RelayAddress, 1, 8>},
+                                                                       {"gpio:", parse_output<GpioAddress, 0, 3>},
                                                                        {"hub:", parse_hub},
                                                                        {"line:", parse_line},
                                                                        {"command:", parse_commands}}};

@@ -15,10 +15,8 @@ constexpr std::size_t shown_of_output = 200;  // characters
 
 // The last line that is not empty.
 std::string last_line(std::string_view text) {
-    while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' '))
-        text.remove_suffix(1);
-    const std::size_t begin = text.rfind('\n');
-    return std::string(text.substr(begin == std::string_view::npos ? 0 : begin + 1).substr(0, shown_of_output));
+    text = text.substr(0, text.find_last_not_of("\n\r ") + 1);
+    return std::string(text.substr(text.rfind('\n') + 1).substr(0, shown_of_output));
 }
 
 // True once a condition has not held for a while: a cut that is shorter than its command takes is not lost for that.

@@ -17,16 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The names in a folder, sorted; none when it is not there, or goes while it is read.
-std::vector<std::string> names_in(const fs::path& folder) {
-    std::vector<std::string> names;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        names.push_back(entry->path().filename());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 std::string user_name(uid_t user) {
     std::array<char, 4096> text{};
     passwd entry{}, *found = nullptr;
@@ -232,19 +222,14 @@ void mark_shared_serials(std::span<DeviceEntry> devices) {
 }
 
 std::vector<DeviceEntry> own_serial_lines(const SystemFolders& folders) {
-    namespace fs = std::filesystem;
-    std::vector<std::string> names;
-    std::error_code error;
-    for (fs::directory_iterator entry(folders.sysfs / "class" / "tty", error), end; !error && entry != end;
-         entry.increment(error)) {
-        // The kernel's serial core tells the kind of UART; 0 is none, and pseudo-terminals and consoles have no kind.
-        const std::string type = first_line_of(entry->path() / "type");
-        if (!type.empty() && type != "0") names.push_back(entry->path().filename());
-    }
-    std::sort(names.begin(), names.end());
+    const fs::path terminals = folders.sysfs / "class" / "tty";
     std::vector<DeviceEntry> lines;
-    for (const std::string& name : names)
-        lines.push_back({std::nullopt, std::nullopt, {serial_node(name, folders)}});
+    for (const std::string& name : names_in(terminals)) {
+        // The kernel's serial core tells the kind of UART; 0 is none, and pseudo-terminals and consoles have no kind.
+        const std::string type = first_line_of(terminals / name / "type");
+        if (!type.empty() && type != "0")
+            lines.push_back({std::nullopt, std::nullopt, {serial_node(name, folders)}});
+    }
     return lines;
 }
 

@@ -57,11 +57,8 @@ bool same_kind(const UsbIdentity& a, const UsbIdentity& b) {
 
 std::vector<fs::path> all_lines(const SerialSystem& system) {
     std::vector<fs::path> lines;
-    std::error_code error;
-    for (fs::directory_iterator entry(system.sysfs() / "class" / "tty", error), end; !error && entry != end;
-         entry.increment(error))
-        lines.push_back(system.devices() / entry->path().filename());
-    std::sort(lines.begin(), lines.end());  // the order of a folder is anybody's
+    for (const std::string& name : names_in(system.sysfs() / "class" / "tty"))
+        lines.push_back(system.devices() / name);
     return lines;
 }
 
