@@ -16,8 +16,8 @@
 #include "run/emulator/assembly.hpp"
 #include "run/scenario/board_files.hpp"
 #include "run/scenario/scenario_file.hpp"
+#include "support/memory_transport.hpp"
 #include "support/oracle_table.hpp"
-#include "wire/transport/memory.hpp"
 #include "world/gnss/navigation_data.hpp"
 
 namespace skyloop::test {

@@ -11,7 +11,9 @@
 namespace skyloop::inline base {
 
 FileDescriptor::~FileDescriptor() {
+    const int reason = errno;  // whoever gives up what was opened has yet to say why
     if (descriptor_ >= 0) ::close(descriptor_);
+    errno = reason;
 }
 
 FileDescriptor claim_name(std::string_view name) {
@@ -20,10 +22,7 @@ FileDescriptor claim_name(std::string_view name) {
     address.sun_family = AF_UNIX;
     std::copy(name.begin(), name.end(), address.sun_path + 1);  // the zero before it: no file
     const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-    if (::bind(claim.value(), reinterpret_cast<const sockaddr*>(&address), size) == 0) return claim;
-    const int reason = errno;
-    claim = FileDescriptor();
-    errno = reason;
+    if (::bind(claim.value(), reinterpret_cast<const sockaddr*>(&address), size) != 0) return {};
     return claim;
 }
 

@@ -16,6 +16,7 @@ public:
         std::swap(descriptor_, other.descriptor_);
         return *this;
     }
+    /// Leaves errno as it is.
     ~FileDescriptor();
 
     [[nodiscard]] int value() const { return descriptor_; }

@@ -254,8 +254,8 @@ std::optional<int> zone_minutes(std::string_view text) {
 UtcTime utc_of_local(const UtcTime& local, int minutes) {
     using namespace std::chrono;
     const sys_days day = year_month_day(year(local.year), month(local.month), std::chrono::day(local.day));
-    UtcTime utc = calendar(day - gps_epoch + hours(local.hour) +
-                           std::chrono::minutes(static_cast<int>(local.minute) - minutes));
+    UtcTime utc =
+        calendar(day - gps_epoch + hours(local.hour) + std::chrono::minutes(static_cast<int>(local.minute) - minutes));
     utc.second = local.second;
     utc.nanosecond = local.nanosecond;
     return utc;

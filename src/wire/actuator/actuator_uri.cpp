@@ -172,6 +172,13 @@ Result<ActuatorUri> parse_actuator_uri(std::string_view uri) {
     return not_understood(uri, power_grammar);
 }
 
+Result<void> check_followed(Actuator& one, PowerState wanted, std::string_view otherwise) {
+    const auto now = one.state();
+    if (!now) return fail(now.error());
+    if (!*now || **now == wanted) return {};
+    return fail(ErrorCode::outside, fmt::format("{} did not follow: {}", one.description(), otherwise));
+}
+
 Result<std::unique_ptr<Actuator>> open_actuator(std::string_view uri) {
     const auto address = parse_actuator_uri(uri);
     if (!address) return fail(address.error());

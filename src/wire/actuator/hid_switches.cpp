@@ -167,12 +167,7 @@ private:
         auto sent = board_.kind == RelayBoard::Kind::dcttech ? device_.send_feature(report) : device_.write(report);
         if (!sent && board_.kind == RelayBoard::Kind::dcttech) sent = device_.write(report);
         if (!sent) return sent;
-        const auto now = state();
-        if (!now) return fail(now.error());
-        if (*now && **now != wanted)
-            return fail(ErrorCode::outside, fmt::format("{} did not follow: the board says it is {}", description(),
-                                                        drawn ? "not drawn" : "drawn"));
-        return {};
+        return check_followed(*this, wanted, drawn ? "the board says it is not drawn" : "the board says it is drawn");
     }
 
     HidDevice device_;

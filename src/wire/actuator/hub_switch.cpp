@@ -54,12 +54,8 @@ public:
 private:
     Result<void> set(PowerState wanted) {
         if (auto done = port_.set_power(wanted == PowerState::on); !done) return done;
-        const auto now = state();
-        if (!now) return fail(now.error());
-        if (**now != wanted)
-            return fail(ErrorCode::outside, fmt::format("{} did not follow: the hub says its power is {}",
-                                                        description(), wanted == PowerState::on ? "off" : "on"));
-        return {};
+        return check_followed(
+            *this, wanted, wanted == PowerState::on ? "the hub says its power is off" : "the hub says its power is on");
     }
     // From now on the kernel's hub driver neither switches the port's power on again, as it otherwise does where what
     // was plugged in has gone, nor gives a driver to what appears there (libusb has no call for it). The kernel takes

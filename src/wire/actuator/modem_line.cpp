@@ -61,12 +61,8 @@ private:
         const bool assert = active_for(wanted, address_.active);
         if (system_->control(device_.value(), assert ? TIOCMBIS : TIOCMBIC, &lines) != 0)
             return fail(refused("be set"));
-        const auto now = state();
-        if (!now) return fail(now.error());
-        if (**now != wanted)
-            return fail(ErrorCode::outside, fmt::format("{} did not follow: the driver says it is {}", description(),
-                                                        assert ? "not asserted" : "asserted"));
-        return {};
+        return check_followed(*this, wanted,
+                              assert ? "the driver says it is not asserted" : "the driver says it is asserted");
     }
 
     ModemLineAddress address_;

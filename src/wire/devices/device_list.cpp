@@ -227,8 +227,7 @@ std::vector<DeviceEntry> own_serial_lines(const SystemFolders& folders) {
     for (const std::string& name : names_in(terminals)) {
         // The kernel's serial core tells the kind of UART; 0 is none, and pseudo-terminals and consoles have no kind.
         const std::string type = first_line_of(terminals / name / "type");
-        if (!type.empty() && type != "0")
-            lines.push_back({std::nullopt, std::nullopt, {serial_node(name, folders)}});
+        if (!type.empty() && type != "0") lines.push_back({std::nullopt, std::nullopt, {serial_node(name, folders)}});
     }
     return lines;
 }

@@ -117,11 +117,8 @@ FileDescriptor datagram_socket(const addrinfo& where) {
     FileDescriptor socket(::socket(where.ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (!socket.open()) return {};
     set_socket_option(socket.value(), SOL_SOCKET, SO_BROADCAST, 1);  // a whole network may listen
-    if (::connect(socket.value(), where.ai_addr, where.ai_addrlen) == 0) return socket;
-    const int reason = errno;
-    socket = FileDescriptor();
-    errno = reason;
-    return {};
+    if (::connect(socket.value(), where.ai_addr, where.ai_addrlen) != 0) return {};
+    return socket;
 }
 
 class TcpServerSink : public MessageSink {

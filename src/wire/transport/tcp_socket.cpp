@@ -90,12 +90,8 @@ FileDescriptor listen_at(const addrinfo& where) {
     if (!server.open()) return {};
     // A run that follows another finds its port free, though old connections still linger in TIME_WAIT.
     set_socket_option(server.value(), SOL_SOCKET, SO_REUSEADDR, 1);
-    if (::bind(server.value(), where.ai_addr, where.ai_addrlen) != 0 ||
-        ::listen(server.value(), waiting_clients) != 0) {
-        const int reason = errno;
-        server = FileDescriptor();
-        errno = reason;
-    }
+    if (::bind(server.value(), where.ai_addr, where.ai_addrlen) != 0 || ::listen(server.value(), waiting_clients) != 0)
+        return {};
     return server;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "wire/transport/memory.hpp"
+#include "support/memory_transport.hpp"
 
 namespace skyloop {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "support/memory_transport.hpp"
 #include "temporary_folder.hpp"
-#include "wire/transport/memory.hpp"
 
 namespace skyloop {
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include "wire/actuator/actuator_uri.hpp"
 
@@ -13,6 +14,10 @@ Result<std::unique_ptr<Actuator>> open_switch(const GpioAddress& address);
 Result<std::unique_ptr<Actuator>> open_switch(const HubPortAddress& address);
 Result<std::unique_ptr<Actuator>> open_switch(const ModemLineAddress& address);
 Result<std::unique_ptr<Actuator>> open_switch(const SwitchCommands& commands);
+
+/// Fails with `outside` where the switch can be asked and is in another state than `wanted`, as `otherwise` says: "the
+/// board says it is drawn".
+Result<void> check_followed(Actuator& one, PowerState wanted, std::string_view otherwise);
 
 /// The level at which an output gives this state.
 inline bool active_for(PowerState state, ActiveLevel active) {

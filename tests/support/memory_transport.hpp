@@ -8,7 +8,7 @@
 
 #include "wire/transport/transport.hpp"
 
-namespace skyloop::inline wire {
+namespace skyloop {
 
 /// Keeps what is written and hands out what is fed; the other end is whatever the owner says it is.
 class MemoryTransport : public Transport {
@@ -43,4 +43,4 @@ private:
     std::uint32_t receiver_baud_ = 0;
 };
 
-}  // namespace skyloop::inline wire
+}  // namespace skyloop
