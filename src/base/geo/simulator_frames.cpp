@@ -23,11 +23,6 @@ Position<Ecef> LevelFrame::to_ecef(const Position<Level>& point) const {
     return local_.to_ecef(Position<Enu>(level_to_enu_ * point.vector()));
 }
 
-Position<Level> LevelFrame::to_level(const Position<Ecef>& point) const {
-    const double unit = placement_.unit.value();
-    return Position<Level>(level_to_enu_.transpose() * local_.to_enu(point).vector() / (unit * unit));
-}
-
 Velocity<Ecef> LevelFrame::to_ecef(const Velocity<Level>& velocity) const {
     return local_.to_ecef(Velocity<Enu>(level_to_enu_ * velocity.vector()));
 }
@@ -70,8 +65,6 @@ Geodetic on_sphere(double radius, const Geodetic& origin, const Eigen::Vector3d&
 }
 
 }  // namespace
-
-std::string_view local_map_name(LocalMap map) { return local_map_names.at(static_cast<std::size_t>(map)); }
 
 std::optional<LocalMap> local_map_of_name(std::string_view name) {
     const auto found = std::find(local_map_names.begin(), local_map_names.end(), name);

@@ -32,7 +32,6 @@ public:
     explicit LevelFrame(const LevelPlacement& placement);
 
     [[nodiscard]] Position<Ecef> to_ecef(const Position<Level>& point) const;
-    [[nodiscard]] Position<Level> to_level(const Position<Ecef>& point) const;
     /// A velocity in level units per second.
     [[nodiscard]] Velocity<Ecef> to_ecef(const Velocity<Level>& velocity) const;
     /// True where the tangent plane has been left too far behind and should be anchored anew.
@@ -54,9 +53,7 @@ enum class LocalMap {
     airsim_sphere    ///< the same on a sphere of 6 378 137 m: AirSim's EarthUtils
 };
 
-/// "ardupilot_flat"
-std::string_view local_map_name(LocalMap map);
-/// Nothing for a name that is none.
+/// Of "ardupilot_flat" and so on; nothing for a name that is none.
 std::optional<LocalMap> local_map_of_name(std::string_view name);
 
 /// Where a point is that a simulator says to be so far from its origin.

@@ -1,4 +1,3 @@
-// The functions of one backend of hidapi, found in its library when first asked for.
 #include "wire/hid/hid_device.hpp"
 
 #include <dlfcn.h>
@@ -20,6 +19,7 @@
 
 namespace skyloop::inline wire {
 
+/// The functions of one backend of hidapi, found in its library when first asked for.
 struct HidApi {
     HidBackend backend;
     decltype(&hid_init) initialize;
@@ -34,9 +34,6 @@ struct HidApi {
     decltype(&hid_get_feature_report) get_feature_report;
     decltype(&hid_error) error;
 };
-
-/// Stays loaded until the program ends. Fails with `outside`: the library is not there, and which package has it.
-Result<const HidApi*> hid_api(HidBackend backend);
 
 namespace {
 
@@ -78,8 +75,7 @@ Result<HidApi> load(HidBackend backend) {
     return api;
 }
 
-}  // namespace
-
+// Stays loaded until the program ends. Fails with `outside`: the library is not there, and which package has it.
 Result<const HidApi*> hid_api(HidBackend backend) {
     static const Result<HidApi> hidraw = load(HidBackend::hidraw);
     static const Result<HidApi> libusb = load(HidBackend::libusb);
@@ -87,8 +83,6 @@ Result<const HidApi*> hid_api(HidBackend backend) {
     if (!api) return fail(api.error());
     return &*api;
 }
-
-namespace {
 
 constexpr std::size_t longest_report = 4096;  // bytes; those of the devices here have 64
 

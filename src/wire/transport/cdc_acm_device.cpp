@@ -106,24 +106,10 @@ CdcAcmDevice::CdcAcmDevice(const UsbFace& face) : configuration_(configuration_b
     strings_ = {Bytes{4, string_type, low(us_english), high(us_english)}, string_descriptor(face.manufacturer),
                 string_descriptor(face.product)};
     if (!face.serial.empty()) strings_.push_back(string_descriptor(face.serial));
-    device_ = {18,
-               device_type,
-               0x10,
-               0x01,
-               2,
-               0,
-               0,
-               static_cast<std::uint8_t>(packet_bytes),
-               low(face.ids.vendor),
-               high(face.ids.vendor),
-               low(face.ids.product),
-               high(face.ids.product),
-               low(face.release),
-               high(face.release),
-               1,
-               2,
-               static_cast<std::uint8_t>(face.serial.empty() ? 0 : 3),
-               1};
+    device_ = {18, device_type, 0x10, 0x01, 2, 0, 0, static_cast<std::uint8_t>(packet_bytes)};
+    for (const std::uint16_t number : {face.ids.vendor, face.ids.product, face.release})
+        device_.insert(device_.end(), {low(number), high(number)});
+    device_.insert(device_.end(), {1, 2, static_cast<std::uint8_t>(face.serial.empty() ? 0 : 3), 1});
 }
 
 std::optional<Bytes> CdcAcmDevice::control(const UsbSetup& setup, ByteSpan data) {

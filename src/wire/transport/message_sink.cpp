@@ -19,63 +19,55 @@
 #include "detail/tcp_socket.hpp"
 
 namespace skyloop::inline wire {
+namespace {
 
-/// One other end of a stream.
-///
-/// State: what it has not taken of its last message, and whether it has been too slow to be waited for.
+using std::chrono::milliseconds;
+
+// One other end of a stream.
+//
+// State: what it has not taken of its last message, and whether it has been too slow to be waited for.
 class StreamPeer {
 public:
-    /// Offers bytes to the stream; gives how many were taken.
+    // Offers bytes to the stream; gives how many were taken.
     using Write = std::function<std::size_t(ByteSpan)>;
-    /// Returns when the stream may take more, or after a few milliseconds.
+    // Returns when the stream may take more, or after a few milliseconds.
     using Wait = std::function<void()>;
 
-    /// False: the message is not sent, since a part of an earlier one still is before it.
-    /// @param patience to wait for an other end that has not been too slow before
-    bool send(ByteSpan message, std::chrono::milliseconds patience, const Write& write, const Wait& wait);
-    /// Goes on with the rest; true: there is none any more.
-    bool flush(const Write& write);
-    /// flush() until it is true or the patience is over.
-    bool flush_within(std::chrono::milliseconds patience, const Write& write, const Wait& wait);
-    /// The stream is a new one.
+    // False: the message is not sent, since a part of an earlier one still is before it. With patience an other end
+    // that has not been too slow before is waited for.
+    bool send(ByteSpan message, milliseconds patience, const Write& write, const Wait& wait) {
+        const bool waits = patience.count() > 0 && !slow_;
+        if (!(waits ? flush_within(patience, write, wait) : flush(write))) {
+            slow_ = true;
+            return false;
+        }
+        const std::size_t taken = std::min(write(message), message.size());
+        rest_.assign(message.begin() + static_cast<std::ptrdiff_t>(taken), message.end());
+        return true;
+    }
+    // Goes on with the rest; true: there is none any more.
+    bool flush(const Write& write) {
+        if (rest_.empty()) return true;
+        const std::size_t taken = std::min(write(rest_), rest_.size());
+        rest_.erase(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(taken));
+        return rest_.empty();
+    }
+    // flush() until it is true or the patience is over.
+    bool flush_within(milliseconds patience, const Write& write, const Wait& wait) {
+        const auto end = std::chrono::steady_clock::now() + patience;
+        while (!flush(write)) {
+            if (std::chrono::steady_clock::now() >= end) return false;
+            wait();
+        }
+        return true;
+    }
+    // The stream is a new one.
     void forget() { rest_.clear(); }
-    [[nodiscard]] bool slow() const { return slow_; }
 
 private:
     Bytes rest_;
     bool slow_ = false;
 };
-
-bool StreamPeer::flush(const Write& write) {
-    if (rest_.empty()) return true;
-    const std::size_t taken = std::min(write(rest_), rest_.size());
-    rest_.erase(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(taken));
-    return rest_.empty();
-}
-
-bool StreamPeer::flush_within(std::chrono::milliseconds patience, const Write& write, const Wait& wait) {
-    const auto end = std::chrono::steady_clock::now() + patience;
-    while (!flush(write)) {
-        if (std::chrono::steady_clock::now() >= end) return false;
-        wait();
-    }
-    return true;
-}
-
-bool StreamPeer::send(ByteSpan message, std::chrono::milliseconds patience, const Write& write, const Wait& wait) {
-    const bool waits = patience.count() > 0 && !slow_;
-    if (!(waits ? flush_within(patience, write, wait) : flush(write))) {
-        slow_ = true;
-        return false;
-    }
-    const std::size_t taken = std::min(write(message), message.size());
-    rest_.assign(message.begin() + static_cast<std::ptrdiff_t>(taken), message.end());
-    return true;
-}
-
-namespace {
-
-using std::chrono::milliseconds;
 
 constexpr int wait_slice_ms = 5;
 constexpr std::size_t most_clients = 64;

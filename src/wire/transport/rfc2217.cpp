@@ -31,6 +31,8 @@ constexpr std::size_t most_answer_bytes = 65536;
 // Of commands that are followed at one call: a client that floods must not hold the loop. Clients send some ten at
 // once.
 constexpr int most_telnet_commands = 64;
+constexpr std::size_t most_data_waiting = 65536;   // of the client, not read yet
+constexpr std::size_t most_bytes_waiting = 65536;  // for the client
 
 }  // namespace
 
@@ -266,14 +268,6 @@ void ComPortServer::purge(std::uint8_t value) {
     answer_byte(com_command::of_server + com_command::purge_data, value);
 }
 
-namespace {
-
-constexpr std::uint8_t doubled_byte = 255;         // IAC (RFC 854)
-constexpr std::size_t most_data_waiting = 65536;   // of the client, not read yet
-constexpr std::size_t most_bytes_waiting = 65536;  // for the client
-
-}  // namespace
-
 Rfc2217Transport::Rfc2217Transport(std::unique_ptr<TcpTransport> server)
     : server_(std::move(server)), port_("skyloop, an emulated GNSS receiver") {}
 
@@ -321,9 +315,9 @@ std::size_t Rfc2217Transport::write(ByteSpan bytes) {
     std::size_t left = server_->write(ComPortServer::escaped(bytes));
     std::size_t taken = 0;
     for (; taken < bytes.size() && left > 0; ++taken) {
-        const std::size_t width = bytes[taken] == doubled_byte ? 2 : 1;
+        const std::size_t width = bytes[taken] == iac ? 2 : 1;
         // Half of a pair has left: the other half must come next.
-        if (left < width) waiting_.push_back(doubled_byte);
+        if (left < width) waiting_.push_back(iac);
         left -= std::min(left, width);
     }
     return taken;

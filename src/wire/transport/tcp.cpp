@@ -16,6 +16,7 @@ namespace {
 
 constexpr unsigned patience_ms = 60000;  // with an other end that acknowledges nothing
 constexpr int keep_alive_idle_s = 30, keep_alive_every_s = 10, keep_alive_tries = 3;
+constexpr int most_at_once = 8;  // clients that are let in or turned away in one look
 
 }  // namespace
 
@@ -45,12 +46,6 @@ bool calls_itself(int socket) {
         return false;
     return own_size == other_size && std::memcmp(&own, &other, own_size) == 0;
 }
-
-namespace {
-
-constexpr int most_at_once = 8;  // clients that are let in or turned away in one look
-
-}  // namespace
 
 Result<TcpAddress> parse_tcp_address(std::string_view text) {
     const auto refused = [&](std::string_view what) {

@@ -13,6 +13,10 @@
 
 #include "base/core/result.hpp"
 
+struct libusb_context;
+struct libusb_device;
+struct libusb_device_handle;
+
 namespace skyloop::inline wire {
 
 /// The two numbers of a device descriptor that tell what a device is (USB 2.0, table 9-8: idVendor, idProduct).
@@ -52,14 +56,6 @@ struct UsbAddress {
 Result<UsbAddress> parse_usb_address(std::string_view text);
 /// As parse_usb_address reads it.
 std::string to_string(const UsbAddress& address);
-
-}  // namespace skyloop::inline wire
-
-struct libusb_context;
-struct libusb_device;
-struct libusb_device_handle;
-
-namespace skyloop::inline wire {
 
 /// A session of libusb. Devices and handles keep it alive.
 using UsbContext = std::shared_ptr<libusb_context>;
