@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/core/words.hpp"
 #include "detail/outlines.hpp"
 
 namespace skyloop::inline world {
@@ -11,14 +12,6 @@ namespace {
 
 constexpr double tallest = 1000;  ///< m
 constexpr double foot = 0.3048;   ///< m
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && text.front() == ' ')
-        text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ')
-        text.remove_suffix(1);
-    return text;
-}
 
 bool is_digit(std::string_view text, std::size_t at) { return at < text.size() && text[at] >= '0' && text[at] <= '9'; }
 

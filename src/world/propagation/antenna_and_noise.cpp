@@ -16,6 +16,7 @@
 #include "base/core/files.hpp"
 #include "base/core/number_text.hpp"
 #include "base/core/result.hpp"
+#include "base/core/words.hpp"
 
 namespace skyloop::inline world {
 
@@ -38,17 +39,14 @@ Result<NumberTable> read_number_table(std::string_view text, std::string_view na
 
 namespace {
 
-std::string_view table_trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r");
-    return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
+constexpr std::string_view table_blanks = " \t\r";
 
 // Reads the cells of one line, or says what is wrong with it.
 std::string read_cells(std::string_view line, std::size_t columns, std::array<double, 3>& values) {
     std::size_t count = 0;
     for (std::size_t at = 0; at <= line.size(); ++count) {
         const std::size_t comma = std::min(line.find(',', at), line.size());
-        const std::string_view cell = table_trimmed(line.substr(at, comma - at));
+        const std::string_view cell = trimmed(line.substr(at, comma - at), table_blanks);
         if (count == columns) return fmt::format("found more than {} columns", columns);
         const auto number = number_in<double>(cell);
         if (!number) return fmt::format("found \"{}\"; expected a number", cell.substr(0, 40));
@@ -68,7 +66,7 @@ Result<NumberTable> read_number_table(std::string_view text, std::string_view na
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // as spreadsheets put it before UTF-8
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
-        const std::string_view line = table_trimmed(text.substr(at, end - at));
+        const std::string_view line = trimmed(text.substr(at, end - at), table_blanks);
         at = end + 1;
         ++number;
         if (line.empty() || line.front() == '#') continue;
