@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "support/exhaustive_paths.hpp"
 #include "support/oracle_table.hpp"
 #include "support/random_sky.hpp"
 #include "world/city/city_file.hpp"
-#include "world/scene/exhaustive_paths.hpp"
 #include "world/scene/generated_city.hpp"
 
 namespace skyloop::test {

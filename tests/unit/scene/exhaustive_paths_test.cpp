@@ -1,4 +1,4 @@
-#include "world/scene/exhaustive_paths.hpp"
+#include "support/exhaustive_paths.hpp"
 
 #include <gtest/gtest.h>
 

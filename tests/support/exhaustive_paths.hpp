@@ -3,7 +3,7 @@
 
 #include "world/scene/path_finder.hpp"
 
-namespace skyloop::inline world {
+namespace skyloop::test {
 
 /// Every path up to a few reflections, slow and complete: what a PathFinder is measured against. They share
 /// UrbanScene::first_hit and nothing else: here the satellite is mirrored, in long double, and no ray is guessed.
@@ -18,4 +18,4 @@ std::vector<SatellitePaths> exhaustive_paths(const UrbanScene& scene, const Scen
                                              std::span<const SceneSatellite> satellites,
                                              const PathSearchSettings& settings);
 
-}  // namespace skyloop::inline world
+}  // namespace skyloop::test

@@ -1,11 +1,11 @@
-#include "world/scene/exhaustive_paths.hpp"
+#include "support/exhaustive_paths.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace skyloop::inline world {
+namespace skyloop::test {
 namespace {
 
 using LongVector = Eigen::Matrix<long double, 3, 1>;
@@ -262,4 +262,4 @@ std::vector<SatellitePaths> exhaustive_paths(const UrbanScene& scene, const Scen
     return result;
 }
 
-}  // namespace skyloop::inline world
+}  // namespace skyloop::test
