@@ -30,25 +30,31 @@ static_assert(sizeof(CacheHeader) == 40);
 
 class CityWriter {
 public:
-    template <class Number>
-    void number(Number value) {
-        static_assert(std::is_arithmetic_v<Number>);
-        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-    }
-    void count(std::size_t value) { number<std::uint64_t>(value); }
-    void text(const std::string& value) {
-        count(value.size());
-        bytes_ += value;
+    template <class... Values>
+    void operator()(const Values&... values) {
+        (put(values), ...);
     }
     template <class List, class Body>
-    void list(const List& items, Body body) {
-        count(items.size());
+    void list(const List& items, std::size_t /*bytes_each*/, Body body) {
+        put(std::uint64_t{items.size()});
         for (const auto& item : items)
             body(item);
     }
     [[nodiscard]] std::string take() { return std::move(bytes_); }
 
 private:
+    template <class Number>
+    void put(const Number& value) {
+        static_assert(std::is_arithmetic_v<Number>);
+        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    void put(bool value) { put(static_cast<std::uint8_t>(value ? 1 : 0)); }
+    void put(SurfaceKind value) { put(static_cast<std::uint8_t>(value)); }
+    void put(const std::string& value) {
+        put(std::uint64_t{value.size()});
+        bytes_ += value;
+    }
+
     std::string bytes_;
 };
 
@@ -57,141 +63,104 @@ class CityReader {
 public:
     explicit CityReader(std::string_view bytes) : bytes_(bytes) {}
 
-    template <class Number>
-    Number number() {
-        Number value{};
-        if (bytes_.size() < sizeof value) {
-            good_ = false;
-            return value;
-        }
-        std::memcpy(&value, bytes_.data(), sizeof value);
-        bytes_.remove_prefix(sizeof value);
-        return value;
+    template <class... Values>
+    void operator()(Values&... values) {
+        (take(values), ...);
     }
     // Of items that take at least so many bytes each.
-    std::size_t count(std::size_t bytes_each) {
-        const auto value = number<std::uint64_t>();
-        if (value > bytes_.size() / bytes_each) good_ = false;
-        return good_ ? static_cast<std::size_t>(value) : 0;
-    }
-    std::string text() {
-        const std::size_t size = count(1);
-        std::string value(bytes_.substr(0, size));
-        bytes_.remove_prefix(size);
-        return value;
-    }
     template <class List, class Body>
     void list(List& items, std::size_t bytes_each, Body body) {
         const std::size_t size = count(bytes_each);
         items.clear();
         items.reserve(size);
         for (std::size_t i = 0; i < size && good_; ++i)
-            items.push_back(body());
+            body(items.emplace_back());
     }
     [[nodiscard]] bool finished() const { return good_ && bytes_.empty(); }
 
 private:
+    std::size_t count(std::size_t bytes_each) {
+        std::uint64_t value = 0;
+        take(value);
+        if (value > bytes_.size() / bytes_each) good_ = false;
+        return good_ ? static_cast<std::size_t>(value) : 0;
+    }
+    template <class Number>
+    void take(Number& value) {
+        static_assert(std::is_arithmetic_v<Number>);
+        value = {};
+        if (bytes_.size() < sizeof value) {
+            good_ = false;
+            return;
+        }
+        std::memcpy(&value, bytes_.data(), sizeof value);
+        bytes_.remove_prefix(sizeof value);
+    }
+    void take(bool& value) {
+        std::uint8_t byte = 0;
+        take(byte);
+        value = byte != 0;
+    }
+    void take(SurfaceKind& value) {
+        std::uint8_t byte = 0;
+        take(byte);
+        value = static_cast<SurfaceKind>(byte);
+    }
+    void take(std::string& value) {
+        value = bytes_.substr(0, count(1));
+        bytes_.remove_prefix(value.size());
+    }
+
     std::string_view bytes_;
     bool good_ = true;
 };
 
-void write_model(CityWriter& out, const CityModel& model) {
-    out.number(model.origin.latitude.rad());
-    out.number(model.origin.longitude.rad());
-    out.number(model.origin.height.above_ellipsoid.value());
-    out.list(model.vertices, [&](const Eigen::Vector3d& v) {
-        for (const double part : {v.x(), v.y(), v.z()})
-            out.number(part);
-    });
-    out.list(model.triangles, [&](const CityTriangle& t) {
-        for (const std::uint32_t corner : t.corners)
-            out.number(corner);
-        out.number(static_cast<std::uint8_t>(t.kind));
-        out.number(t.material);
-    });
-    out.list(model.materials, [&](const std::string& name) { out.text(name); });
-    out.list(model.foliage, [&](const FoliageVolume& trees) {
-        out.list(trees.ring, [&](const Eigen::Vector2d& v) {
-            out.number(v.x());
-            out.number(v.y());
-        });
-        for (const double part : {trees.base, trees.top, trees.ground.value_or(0)})
-            out.number(part);
-        out.number(static_cast<std::uint8_t>(trees.ground ? 1 : 0));
-    });
-    out.list(model.grounded, [&](const GroundedBuilding& building) {
-        out.number(building.first);
-        out.number(building.count);
-        out.number(building.ground);
-    });
+// The order of the numbers, for a writer of a const city and a reader of another.
+
+template <class Archive, class Trees>
+void exchange_foliage(Archive& archive, Trees& trees) {
+    double ground = trees.ground.value_or(0);
+    bool grounded = trees.ground.has_value();
+    archive.list(trees.ring, 16, [&](auto& v) { archive(v.x(), v.y()); });
+    archive(trees.base, trees.top, ground, grounded);
+    if constexpr (!std::is_const_v<Trees>)
+        if (grounded) trees.ground = ground;
 }
 
-CityTriangle read_triangle(CityReader& in) {
-    CityTriangle t;
-    for (std::uint32_t& corner : t.corners)
-        corner = in.number<std::uint32_t>();
-    t.kind = static_cast<SurfaceKind>(in.number<std::uint8_t>());
-    t.material = in.number<std::uint8_t>();
-    return t;
+template <class Archive, class Model>
+void exchange_model(Archive& archive, Model& model) {
+    double latitude = model.origin.latitude.rad(), longitude = model.origin.longitude.rad();
+    double height = model.origin.height.above_ellipsoid.value();
+    archive(latitude, longitude, height);
+    if constexpr (!std::is_const_v<Model>)
+        model.origin = {Angle::radians(latitude), Angle::radians(longitude), {Metres(height)}};
+    archive.list(model.vertices, 24, [&](auto& v) { archive(v.x(), v.y(), v.z()); });
+    archive.list(model.triangles, 14,
+                 [&](auto& t) { archive(t.corners[0], t.corners[1], t.corners[2], t.kind, t.material); });
+    archive.list(model.materials, 8, [&](auto& name) { archive(name); });
+    archive.list(model.foliage, 33, [&](auto& trees) { exchange_foliage(archive, trees); });
+    archive.list(model.grounded, 16, [&](auto& building) { archive(building.first, building.count, building.ground); });
 }
 
-FoliageVolume read_foliage(CityReader& in) {
-    FoliageVolume trees;
-    in.list(trees.ring, 16, [&] {
-        const double east = in.number<double>(), north = in.number<double>();
-        return Eigen::Vector2d(east, north);
-    });
-    double ground = 0;
-    for (double* part : {&trees.base, &trees.top, &ground})
-        *part = in.number<double>();
-    if (in.number<std::uint8_t>() != 0) trees.ground = ground;
-    return trees;
+template <class Archive, class Anchor>
+void exchange_anchor(Archive& archive, Anchor& anchor) {
+    MapAnchor known = anchor.value_or(MapAnchor{});
+    bool present = anchor.has_value(), levelled = known.level.has_value();
+    double level = known.level.value_or(0);
+    archive(present, known.named, levelled, known.system, known.east, known.north, level);
+    if constexpr (!std::is_const_v<Anchor>) {
+        if (levelled) known.level = level;
+        if (present) anchor = std::move(known);
+    }
 }
 
-GroundedBuilding read_grounded(CityReader& in) {
-    GroundedBuilding building;
-    building.first = in.number<std::uint32_t>();
-    building.count = in.number<std::uint32_t>();
-    building.ground = in.number<double>();
-    return building;
-}
-
-CityModel read_model(CityReader& in) {
-    CityModel model;
-    model.origin.latitude = Angle::radians(in.number<double>());
-    model.origin.longitude = Angle::radians(in.number<double>());
-    model.origin.height = {Metres(in.number<double>())};
-    in.list(model.vertices, 24, [&] {
-        const double x = in.number<double>(), y = in.number<double>(), z = in.number<double>();
-        return Eigen::Vector3d(x, y, z);
-    });
-    in.list(model.triangles, 14, [&] { return read_triangle(in); });
-    in.list(model.materials, 8, [&] { return in.text(); });
-    in.list(model.foliage, 33, [&] { return read_foliage(in); });
-    in.list(model.grounded, 16, [&] { return read_grounded(in); });
-    return model;
-}
-
-void write_anchor(CityWriter& out, const std::optional<MapAnchor>& anchor) {
-    const MapAnchor known = anchor.value_or(MapAnchor{});
-    for (const bool part : {anchor.has_value(), known.named, known.level.has_value()})
-        out.number(static_cast<std::uint8_t>(part ? 1 : 0));
-    out.text(known.system);
-    for (const double part : {known.east, known.north, known.level.value_or(0)})
-        out.number(part);
-}
-
-std::optional<MapAnchor> read_anchor(CityReader& in) {
-    MapAnchor anchor;
-    bool present = false, levelled = false;
-    for (bool* part : {&present, &anchor.named, &levelled})
-        *part = in.number<std::uint8_t>() != 0;
-    anchor.system = in.text();
-    double level = 0;
-    for (double* part : {&anchor.east, &anchor.north, &level})
-        *part = in.number<double>();
-    if (levelled) anchor.level = level;
-    return present ? std::optional<MapAnchor>(std::move(anchor)) : std::nullopt;
+template <class Archive, class File>
+void exchange_file(Archive& archive, File& file) {
+    exchange_model(archive, file.model);
+    archive(file.format, file.buildings, file.dropped);
+    archive.list(file.warnings, 8, [&](auto& warning) { archive(warning); });
+    archive.list(file.companions, 16, [&](auto& companion) { archive(companion.name, companion.digest); });
+    exchange_anchor(archive, file.anchor);
 }
 
 bool consistent(const CityModel& model) {
@@ -210,16 +179,7 @@ bool consistent(const CityModel& model) {
 
 std::string encode_city(const CityFile& file, std::uint64_t key) {
     CityWriter out;
-    write_model(out, file.model);
-    out.text(file.format);
-    out.count(file.buildings);
-    out.count(file.dropped);
-    out.list(file.warnings, [&](const std::string& warning) { out.text(warning); });
-    out.list(file.companions, [&](const CityCompanion& companion) {
-        out.text(companion.name);
-        out.number(companion.digest);
-    });
-    write_anchor(out, file.anchor);
+    exchange_file(out, file);
     const std::string body = out.take();
     CacheHeader header;
     header.key = key;
@@ -239,16 +199,7 @@ std::optional<CityFile> decode_city(std::string_view bytes, std::uint64_t key) {
     if (std::memcmp(&header, &expected, sizeof header) != 0 || fnv1a_64(body) != header.digest) return std::nullopt;
     CityReader in(body);
     CityFile file;
-    file.model = read_model(in);
-    file.format = in.text();
-    file.buildings = static_cast<std::size_t>(in.number<std::uint64_t>());
-    file.dropped = static_cast<std::size_t>(in.number<std::uint64_t>());
-    in.list(file.warnings, 8, [&] { return in.text(); });
-    in.list(file.companions, 16, [&] {
-        std::string name = in.text();
-        return CityCompanion{std::move(name), in.number<std::uint64_t>()};
-    });
-    file.anchor = read_anchor(in);
+    exchange_file(in, file);
     if (!in.finished() || !consistent(file.model)) return std::nullopt;
     return file;
 }
