@@ -27,6 +27,10 @@ ReflectionRules reflection_rules(const PathSearchSettings& settings) {
     return rules;
 }
 
+double least_cosine(const PathSearchSettings& settings) {
+    return std::cos(std::clamp(settings.tolerance_deg, 0.0, 180.0) * std::numbers::pi / 180);
+}
+
 void Wavefront::clear() {
     rays_.clear();
     number_.clear();
@@ -140,7 +144,7 @@ PathRefiner::PathRefiner(const UrbanScene& scene, const PathSearchSettings& sett
     : scene_(scene),
       rules_(reflection_rules(settings)),
       most_hops_(settings.most_hops),
-      least_cosine_(std::cos(std::clamp(settings.tolerance_deg, 0.0, 180.0) * std::numbers::pi / 180)) {}
+      least_cosine_(least_cosine(settings)) {}
 
 void PathRefiner::begin(const Eigen::Vector3d& antenna, std::span<const SearchTarget> targets) {
     antenna_ = antenna;

@@ -112,11 +112,10 @@ PathSearch::Lattices PathSearch::lattices(int rays, bool slopes) const {
 
 PathSearch::PathSearch(const UrbanScene& scene, const PathSearchSettings& settings, std::size_t workers)
     : scene_(scene),
+      settings_(settings),
       rules_(reflection_rules(settings)),
-      blocked_only_(settings.blocked_only),
       level_surfaces_(settings.roofs_reflect || settings.ground_reflects),
-      banded_(settings.banded),
-      least_cosine_(std::cos(std::clamp(settings.tolerance_deg, 0.0, 180.0) * std::numbers::pi / 180)),
+      least_cosine_(least_cosine(settings)),
       moving_(lattices(rays_of(settings), elevations_change(scene, settings))),
       still_(lattices(std::min(rays_of(settings), still_rays), moving_.everywhere.has_value())),
       scratch_(workers),
@@ -124,7 +123,7 @@ PathSearch::PathSearch(const UrbanScene& scene, const PathSearchSettings& settin
 
 void PathSearch::run(SearchCrew& crew) {
     sight_.look(scene_, request_.antenna, request_.satellites);
-    sight_.collect_targets(request_.satellites, blocked_only_, targets_);
+    sight_.collect_targets(request_.satellites, settings_.blocked_only, targets_);
     aim();
     const std::size_t count = (directions_.size() + chunk_rays - 1) / chunk_rays;
     if (chunks_.size() < count) chunks_.resize(count);
@@ -153,7 +152,7 @@ void PathSearch::aim() {
     const double turn = turn_of(request_.number);
     directions_.clear();
     bands_.clear();
-    if (!banded_ && !targets_.empty()) bands_.push_back({level_surfaces_ ? -1.0 : 0.0, 1});
+    if (!settings_.banded && !targets_.empty()) bands_.push_back({level_surfaces_ ? -1.0 : 0.0, 1});
     for (const SearchTarget& target : targets_) {
         const double elevation = std::asin(std::clamp(target.direction.z(), -1.0, 1.0));
         add_bands(elevation, lattices.banded.spacing(), level_surfaces_, bands_);

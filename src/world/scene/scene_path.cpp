@@ -1,7 +1,5 @@
 #include "world/scene/scene_path.hpp"
 
-#include <cmath>
-
 #include "world/scene/urban_scene.hpp"
 
 namespace skyloop::inline world {
@@ -45,18 +43,6 @@ std::vector<Eigen::Vector3d> reflection_points(const UrbanScene& scene, const Sc
         points.push_back(place);
     }
     return points;
-}
-
-std::vector<double> incidence_cosines(const UrbanScene& scene, const ScenePath& path) {
-    std::vector<double> cosines;
-    cosines.reserve(path.planes.size());
-    Eigen::Vector3d direction = path.arrival;
-    for (const std::uint32_t index : path.planes) {
-        const ScenePlane& plane = scene.planes()[index];
-        cosines.push_back(std::abs(plane.normal.dot(direction)));
-        direction = mirrored(plane.normal, direction);
-    }
-    return cosines;
 }
 
 }  // namespace skyloop::inline world

@@ -75,7 +75,4 @@ UnfoldedPath unfold(const UrbanScene& scene, std::span<const std::uint32_t> plan
 std::vector<Eigen::Vector3d> reflection_points(const UrbanScene& scene, const ScenePath& path,
                                                const Eigen::Vector3d& antenna);
 
-/// Cosine of the angle of incidence at each reflection, from the antenna outwards.
-std::vector<double> incidence_cosines(const UrbanScene& scene, const ScenePath& path);
-
 }  // namespace skyloop::inline world

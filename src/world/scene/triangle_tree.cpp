@@ -138,7 +138,7 @@ const char* meaning(RTCError error) {
 
 struct TriangleTree::Parts {
     /// Bytes that the device holds; Embree calls from the threads that build.
-    std::atomic<std::int64_t> memory{0}, most_memory{0};
+    std::atomic<std::int64_t> memory{0};
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
@@ -151,11 +151,7 @@ struct TriangleTree::Parts {
     }
 
     static bool count(void* self, ssize_t bytes, bool) {
-        auto& parts = *static_cast<Parts*>(self);
-        const std::int64_t now = parts.memory += bytes;
-        std::int64_t most = parts.most_memory;
-        while (now > most && !parts.most_memory.compare_exchange_weak(most, now)) {
-        }
+        static_cast<Parts*>(self)->memory += bytes;
         return true;
     }
 };
@@ -238,6 +234,5 @@ std::array<TreeHit, TriangleTree::width> TriangleTree::nearest(std::span<const S
 }
 
 std::size_t TriangleTree::memory() const { return static_cast<std::size_t>(parts_->memory.load()); }
-std::size_t TriangleTree::most_memory() const { return static_cast<std::size_t>(parts_->most_memory.load()); }
 
 }  // namespace skyloop::inline world

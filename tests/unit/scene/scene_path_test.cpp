@@ -91,13 +91,5 @@ TEST(Unfold, LosesNothingAtTheDistanceOfASatellite) {
                 1e-10);
 }
 
-TEST(IncidenceCosines, AreThoseAtEachWall) {
-    const auto scene = built_scene(corner_city());
-    const Eigen::Vector3d direction = heading(30, -145);
-    const ScenePath path = corner_path(*scene, {0, 0, 1.5}, infinitely_far * direction);
-    EXPECT_THAT(incidence_cosines(*scene, path), testing::ElementsAre(testing::DoubleNear(-direction.x(), 1e-12),
-                                                                      testing::DoubleNear(-direction.y(), 1e-12)));
-}
-
 }  // namespace
 }  // namespace skyloop::test

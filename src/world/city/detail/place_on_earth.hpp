@@ -115,8 +115,6 @@ public:
         return (*this)(Eigen::Vector3d(place.x(), place.y(), ground_));
     }
     [[nodiscard]] const Geodetic& origin() const { return origin_; }
-    /// Whether the file tells where on the Earth it lies.
-    [[nodiscard]] bool on_earth() const { return frame_.has_value(); }
     /// Of places of a map, for the files that come after.
     [[nodiscard]] const std::optional<MapAnchor>& anchor() const { return anchor_; }
     /// What of the place is not told by the file, or not as exactly: of the map, and of heights where there are any.

@@ -70,7 +70,6 @@ public:
         ++size_;
         return true;
     }
-    [[nodiscard]] bool contains(std::uint64_t key) const { return table_[slot(key)] == key; }
 
 private:
     [[nodiscard]] std::size_t slot(std::uint64_t key) const {
@@ -97,6 +96,8 @@ struct ReflectionRules {
     int most_reflections = skyloop::most_reflections;
 };
 ReflectionRules reflection_rules(const PathSearchSettings& settings);
+/// Cosine of the tolerance of an escaped ray to a satellite.
+double least_cosine(const PathSearchSettings& settings);
 
 /// A ray that left the city after at least one reflection.
 struct EscapedRay {

@@ -77,9 +77,10 @@ private:
     void trace_chunk(std::size_t chunk, std::size_t worker);
 
     const UrbanScene& scene_;
-    ReflectionRules rules_;
-    bool blocked_only_, level_surfaces_, banded_;  ///< level surfaces reflect
-    double least_cosine_;
+    const PathSearchSettings settings_;
+    const ReflectionRules rules_;
+    const bool level_surfaces_;  ///< reflect
+    const double least_cosine_;
     Lattices moving_, still_;
     Request request_;
     KeySet known_;

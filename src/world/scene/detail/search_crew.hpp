@@ -15,7 +15,7 @@ namespace skyloop::inline world {
 /// chance, hence a task's parts must write to places of their own.
 class SearchCrew {
 public:
-    /// Work on one part; `worker` numbers the thread, 0 … workers() − 1.
+    /// Work on one part; `worker` numbers the thread, from 0; alone the caller is 0.
     using Part = std::function<void(std::size_t part, std::size_t worker)>;
 
     /// @param threads 0: the caller. Where the system grants fewer, there are fewer.
@@ -25,8 +25,6 @@ public:
     SearchCrew(const SearchCrew&) = delete;
     SearchCrew& operator=(const SearchCrew&) = delete;
 
-    /// Places for the scratch memory of those who work on parts.
-    [[nodiscard]] std::size_t workers() const { return threads_.empty() ? 1 : threads_.size(); }
     /// Begins a task; the one before must have been waited for. Without threads it is done on return.
     void start(std::function<void()> task);
     /// Waits for the end of the task; everything that it wrote may then be read. At once when there is none.

@@ -40,9 +40,8 @@ public:
     /// @param rays at most `width`
     [[nodiscard]] std::array<TreeHit, width> nearest(std::span<const SceneRay> rays, bool coherent) const;
 
-    /// What Embree holds now and held at most while it built, bytes.
+    /// What Embree holds now, bytes.
     [[nodiscard]] std::size_t memory() const;
-    [[nodiscard]] std::size_t most_memory() const;
 
 private:
     struct Parts;
