@@ -68,14 +68,7 @@ int keep_first(TIFF*, void* first, const char*, const char* format, va_list valu
 int ignore_message(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 void ignore_key(GTIF*, int, const char*, ...) {}
 
-template <class T>
-double sample_of(const unsigned char* bytes) {
-    T value{};
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-}
-
-using SampleReader = double (*)(const unsigned char*);
+using SampleReader = double (*)(const void*);
 
 /// Of SampleFormat and BitsPerSample; null for what is no height.
 SampleReader sample_reader(unsigned format, unsigned bits) {
@@ -84,10 +77,10 @@ SampleReader sample_reader(unsigned format, unsigned bits) {
         SampleReader read;
     };
     constexpr std::array known{
-        Known{SAMPLEFORMAT_IEEEFP, 32, sample_of<float>},       Known{SAMPLEFORMAT_IEEEFP, 64, sample_of<double>},
-        Known{SAMPLEFORMAT_INT, 8, sample_of<std::int8_t>},     Known{SAMPLEFORMAT_INT, 16, sample_of<std::int16_t>},
-        Known{SAMPLEFORMAT_INT, 32, sample_of<std::int32_t>},   Known{SAMPLEFORMAT_UINT, 8, sample_of<std::uint8_t>},
-        Known{SAMPLEFORMAT_UINT, 16, sample_of<std::uint16_t>}, Known{SAMPLEFORMAT_UINT, 32, sample_of<std::uint32_t>}};
+        Known{SAMPLEFORMAT_IEEEFP, 32, number_at<float>},       Known{SAMPLEFORMAT_IEEEFP, 64, number_at<double>},
+        Known{SAMPLEFORMAT_INT, 8, number_at<std::int8_t>},     Known{SAMPLEFORMAT_INT, 16, number_at<std::int16_t>},
+        Known{SAMPLEFORMAT_INT, 32, number_at<std::int32_t>},   Known{SAMPLEFORMAT_UINT, 8, number_at<std::uint8_t>},
+        Known{SAMPLEFORMAT_UINT, 16, number_at<std::uint16_t>}, Known{SAMPLEFORMAT_UINT, 32, number_at<std::uint32_t>}};
     for (const Known& one : known)
         if (one.format == format && one.bits == bits) return one.read;
     return nullptr;

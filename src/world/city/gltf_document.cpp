@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "base/core/archive.hpp"
 #include "detail/city_text.hpp"
+#include "detail/json_text.hpp"
 
 namespace skyloop::inline world {
 namespace {
@@ -21,32 +22,19 @@ std::uint32_t little_word(std::string_view bytes, std::size_t at) {
     return value;
 }
 
-unsigned component_size(int type) {
-    switch (type) {
-        case 5120:
-        case 5121:
-            return 1;
-        case 5122:
-        case 5123:
-            return 2;
-        case 5125:
-        case 5126:
-            return 4;
-        default:
-            return 0;
-    }
+template <class T>
+constexpr GltfComponent component(std::uint64_t type) {
+    return {type, sizeof(T), number_at<T>,
+            std::is_integral_v<T> ? static_cast<double>(std::numeric_limits<T>::max()) : 0};
 }
 
-template <class T>
-double component(const char* at, bool normalized) {
-    T value;
-    std::memcpy(&value, at, sizeof value);
-    if constexpr (std::is_floating_point_v<T>) {
-        return static_cast<double>(value);
-    } else {
-        return normalized ? std::max(-1.0, static_cast<double>(value) / std::numeric_limits<T>::max())
-                          : static_cast<double>(value);
-    }
+std::optional<GltfComponent> component_of_type(std::uint64_t type) {
+    constexpr std::array known{component<std::int8_t>(5120),   component<std::uint8_t>(5121),
+                               component<std::int16_t>(5122),  component<std::uint16_t>(5123),
+                               component<std::uint32_t>(5125), component<float>(gltf_float)};
+    for (const GltfComponent& one : known)
+        if (one.type == type) return one;
+    return std::nullopt;
 }
 
 // RFC 4648 section 4; nothing when it holds other characters.
@@ -101,14 +89,8 @@ bool leaves_shapes(std::string_view extension) {
 }  // namespace
 
 std::optional<std::uint64_t> gltf_index(const json& object, const char* key) {
-    const auto found = object.is_object() ? object.find(key) : object.end();
-    if (found == object.end() || !found->is_number_unsigned()) return std::nullopt;
-    return found->get<std::uint64_t>();
-}
-
-std::string gltf_text(const json& object, const char* key) {
-    const auto found = object.is_object() ? object.find(key) : object.end();
-    return found == object.end() || !found->is_string() ? std::string() : found->get<std::string>();
+    const json& found = member(object, key);
+    return found.is_number_unsigned() ? std::optional(found.get<std::uint64_t>()) : std::nullopt;
 }
 
 std::vector<double> gltf_numbers(const json& object, const char* key, std::vector<double> otherwise) {
@@ -124,21 +106,8 @@ std::vector<double> gltf_numbers(const json& object, const char* key, std::vecto
 }
 
 double GltfNumbers::number(std::size_t index, unsigned which) const {
-    const char* at = bytes.data() + index * stride + which * component_size(component_type);
-    switch (component_type) {
-        case 5120:
-            return component<std::int8_t>(at, normalized);
-        case 5121:
-            return component<std::uint8_t>(at, normalized);
-        case 5122:
-            return component<std::int16_t>(at, normalized);
-        case 5123:
-            return component<std::uint16_t>(at, normalized);
-        case 5125:
-            return component<std::uint32_t>(at, normalized);
-        default:
-            return component<float>(at, false);
-    }
+    const double value = component.read(bytes.data() + index * stride + which * component.size);
+    return normalized && component.most > 0 ? std::max(-1.0, value / component.most) : value;
 }
 
 tl::unexpected<Error> GltfDocument::wrong(std::string_view what) const {
@@ -195,8 +164,7 @@ Result<void> GltfDocument::take_chunks(std::string_view bytes) {
 }
 
 Result<void> GltfDocument::check_version() const {
-    const auto asset = root_.is_object() ? root_.find("asset") : root_.end();
-    const std::string version = asset == root_.end() ? "" : gltf_text(*asset, "version");
+    const std::string_view version = text_member(member(root_, "asset"), "version");
     if (!version.starts_with("2."))
         return wrong(version.empty() ? "has no asset with a version of glTF"
                                      : fmt::format("glTF version {}; expected 2", shown(version)));
@@ -209,15 +177,15 @@ Result<void> GltfDocument::check_version() const {
 
 const json& GltfDocument::list(const char* key) const {
     static const json none = json::array();
-    const auto found = root_.find(key);
-    return found != root_.end() && found->is_array() ? *found : none;
+    const json& found = member(root_, key);
+    return found.is_array() ? found : none;
 }
 
 Result<std::string> GltfDocument::load(const json& buffer) {
-    const std::string uri = gltf_text(buffer, "uri");
+    const std::string_view uri = text_member(buffer, "uri");
     if (uri.starts_with("data:")) {
         const std::size_t comma = uri.find(";base64,");
-        auto bytes = comma == std::string::npos ? std::nullopt : from_base64(std::string_view(uri).substr(comma + 8));
+        auto bytes = comma == uri.npos ? std::nullopt : from_base64(uri.substr(comma + 8));
         if (!bytes) return wrong("a buffer's data URI is no base64");
         return std::move(*bytes);
     }
@@ -261,11 +229,10 @@ Result<GltfNumbers> GltfDocument::numbers(std::uint64_t accessor, std::string_vi
     if (accessor >= accessors.size()) return wrong(fmt::format("names accessor {} of {}", accessor, accessors.size()));
     const json& told = accessors[accessor];
     const auto view_index = gltf_index(told, "bufferView"), count = gltf_index(told, "count");
-    const auto component_type = gltf_index(told, "componentType");
+    const auto component = component_of_type(gltf_index(told, "componentType").value_or(0));
     const json& views = list("bufferViews");
     if (told.contains("sparse")) return wrong(fmt::format("accessor {} is sparse, which is not read", accessor));
-    if (!count || !view_index || *view_index >= views.size() || gltf_text(told, "type") != type || !component_type ||
-        *component_type > 5126 || component_size(static_cast<int>(*component_type)) == 0)
+    if (!count || !view_index || *view_index >= views.size() || text_member(told, "type") != type || !component)
         return wrong(
             fmt::format("accessor {}: expected a bufferView, a count, type {} and a componentType", accessor, type));
     const json& view = views[*view_index];
@@ -279,10 +246,10 @@ Result<GltfNumbers> GltfDocument::numbers(std::uint64_t accessor, std::string_vi
         return wrong(fmt::format("bufferView {}: {} bytes from {}, but its buffer has {}", *view_index, view_length,
                                  view_offset, bytes->size()));
     GltfNumbers numbers;
-    numbers.component_type = static_cast<int>(*component_type);
+    numbers.component = *component;
     numbers.components = type == "VEC3" ? 3 : 1;
     numbers.normalized = told.value("normalized", json()) == json(true);
-    const std::uint64_t size = std::uint64_t{component_size(numbers.component_type)} * numbers.components;
+    const std::uint64_t size = std::uint64_t{component->size} * numbers.components;
     const std::uint64_t stride = gltf_index(view, "byteStride").value_or(size);
     const std::uint64_t offset = gltf_index(told, "byteOffset").value_or(0);
     // One each needs a byte at least: so the product below cannot overflow.

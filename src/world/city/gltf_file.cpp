@@ -5,6 +5,7 @@
 #include "detail/city_text.hpp"
 #include "detail/companion_files.hpp"
 #include "detail/gltf_document.hpp"
+#include "detail/json_text.hpp"
 #include "detail/mesh_builder.hpp"
 
 namespace skyloop::inline world {
@@ -54,17 +55,16 @@ private:
     }
     static std::vector<std::uint64_t> children_of(const json& node) {
         std::vector<std::uint64_t> children;
-        const auto found = node.is_object() ? node.find("children") : node.end();
-        if (found == node.end() || !found->is_array()) return children;
-        for (const json& child : *found)
+        const json& told = member(node, "children");
+        if (!told.is_array()) return children;
+        for (const json& child : told)
             if (child.is_number_unsigned()) children.push_back(child.get<std::uint64_t>());
         return children;
     }
 
     // Whether other places than the node's own are told; readers may leave the extension aside, unless it is required.
     static bool is_instanced(const json& node) {
-        const auto found = node.is_object() ? node.find("extensions") : node.end();
-        return found != node.end() && found->contains("EXT_mesh_gpu_instancing");
+        return member(node, "extensions").contains("EXT_mesh_gpu_instancing");
     }
 
     // Section 3.5.3: a matrix by columns, or translation, rotation and scale.
@@ -100,23 +100,23 @@ private:
         const Eigen::Affine3d placed = parent * *own;
         if (const auto mesh = gltf_index(node, "mesh")) {
             if (is_instanced(node)) ++instanced_;
-            if (auto done = add_mesh(*mesh, placed, gltf_text(node, "name")); !done) return done;
+            if (auto done = add_mesh(*mesh, placed, text_member(node, "name")); !done) return done;
         }
         for (const std::uint64_t child : children_of(node))
             if (auto done = add_node(child, placed, depth + 1); !done) return done;
         return {};
     }
 
-    Result<void> add_mesh(std::uint64_t index, const Eigen::Affine3d& placed, const std::string& node_name) {
+    Result<void> add_mesh(std::uint64_t index, const Eigen::Affine3d& placed, std::string_view node_name) {
         const json& meshes = document_.list("meshes");
         if (index >= meshes.size() || !meshes[index].is_object())
             return document_.wrong(fmt::format("names mesh {} of {}", index, meshes.size()));
-        const std::string mesh_name = gltf_text(meshes[index], "name");
+        const std::string_view mesh_name = text_member(meshes[index], "name");
         for (const json& primitive : meshes[index].value("primitives", json::array())) {
             const auto material = gltf_index(primitive, "material");
             const json& materials = document_.list("materials");
-            const std::string material_name =
-                material && *material < materials.size() ? gltf_text(materials[*material], "name") : "";
+            const std::string_view material_name =
+                material && *material < materials.size() ? text_member(materials[*material], "name") : "";
             builder_.begin_mesh(placed);
             const MeshPart part = builder_.part(material_name, std::array<std::string_view, 2>{mesh_name, node_name});
             if (auto done = add_primitive(primitive, part); !done) return done;
@@ -127,8 +127,7 @@ private:
     Result<void> add_primitive(const json& primitive, MeshPart part) {
         const std::uint64_t mode = gltf_index(primitive, "mode").value_or(4);
         if (mode < 4) return {};  // points and lines
-        const auto attributes = primitive.is_object() ? primitive.find("attributes") : primitive.end();
-        const auto position = attributes == primitive.end() ? std::nullopt : gltf_index(*attributes, "POSITION");
+        const auto position = gltf_index(member(primitive, "attributes"), "POSITION");
         if (!position || mode > 6)
             return document_.wrong("a primitive has no attribute POSITION, or no mode of facets");
         const auto places = document_.numbers(*position, "VEC3");
@@ -137,7 +136,7 @@ private:
         if (const auto indices = gltf_index(primitive, "indices")) {
             auto numbers = document_.numbers(*indices, "SCALAR");
             if (!numbers) return fail(std::move(numbers.error()));
-            if (numbers->component_type == 5126) return document_.wrong("indices of facets are no whole numbers");
+            if (numbers->component.type == gltf_float) return document_.wrong("indices of facets are no whole numbers");
             corners = *numbers;
         }
         const std::size_t count = corners ? corners->count : places->count;

@@ -4,7 +4,7 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "detail/city_text.hpp"
@@ -13,23 +13,26 @@
 namespace skyloop::inline world {
 namespace {
 
+template <class T>
+constexpr PlyType type_of{sizeof(T), std::is_integral_v<T>, number_at<T>};
+
 std::optional<PlyType> ply_type(std::string_view word) {
-    constexpr std::array<std::pair<std::string_view, PlyType>, 16> types{{{"char", {1, true, true}},
-                                                                          {"uchar", {1, true, false}},
-                                                                          {"short", {2, true, true}},
-                                                                          {"ushort", {2, true, false}},
-                                                                          {"int", {4, true, true}},
-                                                                          {"uint", {4, true, false}},
-                                                                          {"float", {4, false, true}},
-                                                                          {"double", {8, false, true}},
-                                                                          {"int8", {1, true, true}},
-                                                                          {"uint8", {1, true, false}},
-                                                                          {"int16", {2, true, true}},
-                                                                          {"uint16", {2, true, false}},
-                                                                          {"int32", {4, true, true}},
-                                                                          {"uint32", {4, true, false}},
-                                                                          {"float32", {4, false, true}},
-                                                                          {"float64", {8, false, true}}}};
+    constexpr std::array<std::pair<std::string_view, PlyType>, 16> types{{{"char", type_of<std::int8_t>},
+                                                                          {"uchar", type_of<std::uint8_t>},
+                                                                          {"short", type_of<std::int16_t>},
+                                                                          {"ushort", type_of<std::uint16_t>},
+                                                                          {"int", type_of<std::int32_t>},
+                                                                          {"uint", type_of<std::uint32_t>},
+                                                                          {"float", type_of<float>},
+                                                                          {"double", type_of<double>},
+                                                                          {"int8", type_of<std::int8_t>},
+                                                                          {"uint8", type_of<std::uint8_t>},
+                                                                          {"int16", type_of<std::int16_t>},
+                                                                          {"uint16", type_of<std::uint16_t>},
+                                                                          {"int32", type_of<std::int32_t>},
+                                                                          {"uint32", type_of<std::uint32_t>},
+                                                                          {"float32", type_of<float>},
+                                                                          {"float64", type_of<double>}}};
     for (const auto& [name, type] : types)
         if (name == word) return type;
     return std::nullopt;
@@ -121,26 +124,11 @@ Result<PlyHeader> parse_ply_header(std::string_view bytes, std::string_view name
 
 namespace {
 
-template <class T>
-double as_number(const unsigned char* bytes) {
-    T value;
-    std::memcpy(&value, bytes, sizeof value);
-    return static_cast<double>(value);
-}
-
 double binary_number(const char* at, const PlyType& type, bool turned) {
     std::array<unsigned char, 8> bytes{};
     for (unsigned i = 0; i < type.size; ++i)
         bytes[turned ? type.size - 1 - i : i] = static_cast<unsigned char>(at[i]);
-    if (!type.integer) return type.size == 8 ? as_number<double>(bytes.data()) : as_number<float>(bytes.data());
-    switch (type.size) {
-        case 1:
-            return type.has_sign ? as_number<std::int8_t>(bytes.data()) : as_number<std::uint8_t>(bytes.data());
-        case 2:
-            return type.has_sign ? as_number<std::int16_t>(bytes.data()) : as_number<std::uint16_t>(bytes.data());
-        default:
-            return type.has_sign ? as_number<std::int32_t>(bytes.data()) : as_number<std::uint32_t>(bytes.data());
-    }
+    return type.number(bytes.data());
 }
 
 class PlyBody {

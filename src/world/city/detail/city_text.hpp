@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,14 @@ namespace skyloop::inline world {
 /// Reads a number at `at` and moves behind it; digits may follow a plus sign, "nan" and "inf" are numbers. One too
 /// large for a double is infinite, one too small is zero. @returns nothing, `at` unmoved, where there is no number
 std::optional<double> take_number(const char*& at, const char* end);
+
+/// The number of type T, as this machine holds it, whose bytes begin at `bytes`.
+template <class T>
+double number_at(const void* bytes) {
+    T value;
+    std::memcpy(&value, bytes, sizeof value);
+    return static_cast<double>(value);
+}
 
 /// A text without the UTF-8 mark that Windows' editors put before it.
 std::string_view without_byte_order_mark(std::string_view text);

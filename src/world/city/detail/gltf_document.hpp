@@ -12,15 +12,24 @@
 
 namespace skyloop::inline world {
 
+/// A kind of number in a buffer.
+struct GltfComponent {
+    std::uint64_t type = 0;  ///< 5120 … 5126, as componentType names it
+    unsigned size = 0;       ///< bytes
+    double (*read)(const void* bytes) = nullptr;
+    double most = 0;  ///< what stands for 1 when it is normalized; 0 of floating ones, which never are
+};
+inline constexpr std::uint64_t gltf_float = 5126;
+
 /// Numbers of an accessor where they lie: checked to be inside their buffer.
 struct GltfNumbers {
     std::string_view bytes;  ///< from the first one on
     std::size_t count = 0, stride = 0;
     unsigned components = 1;
-    int component_type = 0;  ///< 5120 … 5126
+    GltfComponent component;
     bool normalized = false;
-    /// @param index less than count @param component less than components
-    [[nodiscard]] double number(std::size_t index, unsigned component) const;
+    /// @param index less than count @param which less than components
+    [[nodiscard]] double number(std::size_t index, unsigned which) const;
 };
 
 /// Khronos Group, glTF 2.0 specification, sections 3.4 (concepts), 3.6 (buffers), 4.4 (GLB).
@@ -55,8 +64,6 @@ private:
 
 /// A whole number that is not negative; nothing when there is none of that name.
 std::optional<std::uint64_t> gltf_index(const nlohmann::json& object, const char* key);
-/// A text; empty when there is none of that name.
-std::string gltf_text(const nlohmann::json& object, const char* key);
 /// All numbers of an array, `otherwise` when there is none of that name; empty when it holds something else.
 std::vector<double> gltf_numbers(const nlohmann::json& object, const char* key, std::vector<double> otherwise);
 

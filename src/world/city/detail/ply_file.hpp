@@ -14,10 +14,11 @@ namespace skyloop::inline world {
 
 enum class PlyEncoding { ascii, little_endian, big_endian };
 
-/// A number's type, by its size; `integer` with or without sign.
+/// A number's type: its size and how it is read from bytes in this machine's order.
 struct PlyType {
-    unsigned size = 4;
-    bool integer = false, has_sign = true;
+    unsigned size = 0;
+    bool integer = false;
+    double (*number)(const void* bytes) = nullptr;
 };
 
 struct PlyProperty {
