@@ -28,34 +28,26 @@ bool one_of(std::string_view word, std::initializer_list<std::string_view> words
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Twice the area as a vector.
-Eigen::Vector3d area_vector(const ObjectSurface& surface) {
-    const auto& ring = surface.rings.front();
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-        const Eigen::Vector3d a = ring[i] - ring[0], b = ring[i + 1] - ring[0];
-        sum += Eigen::Vector3d(a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
-                               a.x() * b.y() - a.y() * b.x());
-    }
-    return sum;
+/// Calls with(point) for each corner of all rings.
+template <class Surfaces, class With>
+void for_each_point(Surfaces& surfaces, With with) {
+    for (auto& surface : surfaces)
+        for (auto& ring : surface.rings)
+            for (auto& point : ring)
+                with(point);
 }
 
-double lowest_of(const std::vector<ObjectSurface>& surfaces) {
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const ObjectSurface& surface : surfaces)
-        for (const auto& ring : surface.rings)
-            for (const Eigen::Vector3d& point : ring)
-                lowest = std::min(lowest, point.z());
-    return lowest;
-}
+struct Heights {
+    double lowest = std::numeric_limits<double>::infinity(), highest = -std::numeric_limits<double>::infinity();
+};
 
-double highest_of(const std::vector<ObjectSurface>& surfaces) {
-    double highest = -std::numeric_limits<double>::infinity();
-    for (const ObjectSurface& surface : surfaces)
-        for (const auto& ring : surface.rings)
-            for (const Eigen::Vector3d& point : ring)
-                highest = std::max(highest, point.z());
-    return highest;
+Heights heights_of(const std::vector<ObjectSurface>& surfaces) {
+    Heights heights;
+    for_each_point(surfaces, [&](const Eigen::Vector3d& point) {
+        heights.lowest = std::min(heights.lowest, point.z());
+        heights.highest = std::max(heights.highest, point.z());
+    });
+    return heights;
 }
 
 /// Level 0 alone tells no heights of a construction.
@@ -74,7 +66,7 @@ double ground_level(const std::vector<CityObject>& objects) {
     for (const CityObject& object : objects) {
         const auto* surfaces = best_surfaces(object);
         if (!surfaces) continue;
-        const double lowest = lowest_of(*surfaces);
+        const double lowest = heights_of(*surfaces).lowest;
         if (!std::isfinite(lowest)) continue;
         all.push_back(lowest);
         if (object.building) feet.push_back(lowest);
@@ -105,10 +97,7 @@ private:
 
 void ObjectBuilder::add(const CityObject& object, const PlaceOnEarth& place) {
     std::vector<ObjectSurface> surfaces = *best_surfaces(object);
-    for (ObjectSurface& surface : surfaces)
-        for (auto& ring : surface.rings)
-            for (Eigen::Vector3d& point : ring)
-                point = place(point);
+    for_each_point(surfaces, [&](Eigen::Vector3d& point) { point = place(point); });
     if (object.object_class == ObjectClass::construction) {
         add_construction(surfaces);
     } else if (object.object_class == ObjectClass::terrain ||
@@ -126,8 +115,8 @@ void ObjectBuilder::add_surface(const ObjectSurface& surface, SurfaceKind kind) 
 
 void ObjectBuilder::add_construction(const std::vector<ObjectSurface>& surfaces) {
     // What is thin as a whole, such as the deck of a bridge, has no floor of its own.
-    const double lowest = lowest_of(surfaces);
-    const double floor = highest_of(surfaces) > lowest + floor_thickness ? lowest + floor_thickness : lowest - 1;
+    const auto [lowest, highest] = heights_of(surfaces);
+    const double floor = highest > lowest + floor_thickness ? lowest + floor_thickness : lowest - 1;
     const bool told = std::any_of(surfaces.begin(), surfaces.end(), [](const ObjectSurface& surface) {
         return surface.use == SurfaceUse::wall || surface.use == SurfaceUse::roof;
     });
@@ -138,7 +127,7 @@ void ObjectBuilder::add_construction(const std::vector<ObjectSurface>& surfaces)
             add_surface(surface, surface.use == SurfaceUse::roof ? SurfaceKind::roof : SurfaceKind::wall);
             continue;
         }
-        const Eigen::Vector3d normal = area_vector(surface);
+        const Eigen::Vector3d normal = area_vector(surface.rings.front());
         const bool level = normal.z() != 0 && std::abs(normal.z()) >= 0.5 * normal.norm();
         const auto& ring = surface.rings.front();
         const bool low = std::all_of(ring.begin(), ring.end(), [&](const auto& point) { return point.z() <= floor; });
@@ -149,7 +138,7 @@ void ObjectBuilder::add_construction(const std::vector<ObjectSurface>& surfaces)
 bool ObjectBuilder::add_plants(const std::vector<ObjectSurface>& surfaces, bool tree) {
     std::vector<Eigen::Vector2d> points;
     double area = 0, volume = 0, highest = -1e300;
-    const double lowest = lowest_of(surfaces);
+    const double lowest = heights_of(surfaces).lowest;
     for (const ObjectSurface& surface : surfaces) {
         double mean = 0;
         for (const Eigen::Vector3d& point : surface.rings.front()) {
@@ -157,7 +146,7 @@ bool ObjectBuilder::add_plants(const std::vector<ObjectSurface>& surfaces, bool 
             mean += point.z() / static_cast<double>(surface.rings.front().size());
             highest = std::max(highest, point.z());
         }
-        const double flat = std::abs(area_vector(surface).z()) / 2;
+        const double flat = std::abs(area_vector(surface.rings.front()).z()) / 2;
         area += flat;
         volume += flat * (mean - lowest);
     }

@@ -34,24 +34,16 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
     return hull;
 }
 
-double hull_area(const std::vector<Eigen::Vector2d>& ring) {
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-        const Eigen::Vector2d a = ring[i] - ring[0], b = ring[i + 1] - ring[0];
-        sum += a.x() * b.y() - a.y() * b.x();
-    }
-    return std::abs(sum) / 2;
-}
+double hull_area(const std::vector<Eigen::Vector2d>& ring) { return std::abs(doubled_area(ring)) / 2; }
 
-namespace {
-
-/// The normal of a ring in space, its length twice the area (Newell; Sutherland 1974).
-Eigen::Vector3d newell_normal(const std::vector<Eigen::Vector3d>& ring) {
+Eigen::Vector3d area_vector(const std::vector<Eigen::Vector3d>& ring) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (std::size_t i = 1; i + 1 < ring.size(); ++i)
         sum += (ring[i] - ring[0]).cross(ring[i + 1] - ring[0]);
     return sum;
 }
+
+namespace {
 
 void add_walls(CityModel& city, const std::vector<Eigen::Vector2d>& ring, std::pair<double, double> heights,
                std::uint8_t material) {
@@ -166,7 +158,7 @@ bool add_polygon(CityModel& city, const std::vector<std::vector<Eigen::Vector3d>
     for (const auto& ring : rings)
         for (const Eigen::Vector3d& point : ring)
             if (!point.allFinite()) return false;
-    const Eigen::Vector3d normal = newell_normal(rings.front());
+    const Eigen::Vector3d normal = area_vector(rings.front());
     const double length = normal.norm();
     if (!(length > 0 && std::isfinite(length))) return false;
     const Eigen::Vector3d u = (normal / length).unitOrthogonal();

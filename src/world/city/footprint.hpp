@@ -18,6 +18,9 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
 /// The area of a convex ring, in the square of its unit.
 double hull_area(const std::vector<Eigen::Vector2d>& ring);
 
+/// The normal of a ring in space, its length twice the area (Newell; Sutherland 1974); not of an empty one.
+Eigen::Vector3d area_vector(const std::vector<Eigen::Vector3d>& ring);
+
 /// An outline with courtyards; rings in any sense, closed or not; east, north, m.
 struct Footprint {
     std::vector<Eigen::Vector2d> outer;

@@ -232,16 +232,6 @@ void turn_longitudes(Footprint& footprint, LongitudeTurn& turn) {
             point.x() = turn(point.x());
 }
 
-bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p) {
-    bool inside = false;
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-        const Eigen::Vector2d &a = ring[i], &b = ring[j];
-        if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
-            inside = !inside;
-    }
-    return inside;
-}
-
 Result<CityFile> city_of_outlines(Outlines read, std::string_view format, std::string_view name,
                                   const CityFileSettings& settings) {
     CityFile file;

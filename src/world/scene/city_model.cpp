@@ -44,15 +44,6 @@ Eigen::AlignedBox2d box_of_ring(const Ring& ring) {
     return box;
 }
 
-double doubled_ring_area(const Ring& ring) {
-    double sum = 0;
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-        const Eigen::Vector2d u = ring[i] - ring[0], v = ring[i + 1] - ring[0];
-        sum += u.x() * v.y() - u.y() * v.x();
-    }
-    return sum;
-}
-
 // What lies below `limit` (side 1) or above it (side −1) along an axis (Sutherland and Hodgman 1974).
 Ring half_of_ring(const Ring& ring, int axis, double limit, double side) {
     Ring half;
@@ -70,6 +61,25 @@ Ring half_of_ring(const Ring& ring, int axis, double limit, double side) {
 
 }  // namespace
 
+double doubled_area(const Ring& ring) {
+    double sum = 0;
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+        const Eigen::Vector2d u = ring[i] - ring[0], v = ring[i + 1] - ring[0];
+        sum += u.x() * v.y() - u.y() * v.x();
+    }
+    return sum;
+}
+
+bool inside_ring(const Ring& ring, const Eigen::Vector2d& p) {
+    bool inside = false;
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+        const Eigen::Vector2d &a = ring[i], &b = ring[j];
+        if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x())
+            inside = !inside;
+    }
+    return inside;
+}
+
 std::vector<Ring> ring_pieces(Ring ring, double width) {
     constexpr double least_area = 1e-6;
     std::vector<Ring> pieces, open;
@@ -79,7 +89,7 @@ std::vector<Ring> ring_pieces(Ring ring, double width) {
     while (!open.empty()) {
         const Ring piece = std::move(open.back());
         open.pop_back();
-        if (piece.size() < 3 || !(std::abs(doubled_ring_area(piece)) > least_area)) continue;
+        if (piece.size() < 3 || !(std::abs(doubled_area(piece)) > least_area)) continue;
         const Eigen::AlignedBox2d box = box_of_ring(piece);
         int axis = 0;
         if (!(box.sizes().maxCoeff(&axis) > width)) {

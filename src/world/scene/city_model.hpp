@@ -63,6 +63,12 @@ struct CityModel {
     void add_quad(const std::array<Eigen::Vector3d, 4>& corners, SurfaceKind kind, std::uint8_t material = 0);
 };
 
+/// Twice the area of a ring, negative where it runs clockwise.
+double doubled_area(const std::vector<Eigen::Vector2d>& ring);
+
+/// Whether a place lies in a ring, by the even-odd rule.
+bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& place);
+
 /// Halves a ring, its longer side first, until no piece is wider than `width`, m, or than 1/256 of the whole. Pieces
 /// share borders and together cover what the ring covers by the even-odd rule; where that is in several parts, a piece
 /// joins them by edges that are run through twice. Pieces without area are left out, and rings with a corner that is no

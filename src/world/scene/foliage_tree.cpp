@@ -35,17 +35,6 @@ namespace {
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Even-odd rule.
-bool is_inside(std::span<const Eigen::Vector2d> ring, const Eigen::Vector2d& place) {
-    bool inside = false;
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-        const Eigen::Vector2d &a = ring[i], &b = ring[j];
-        if ((a.y() > place.y()) == (b.y() > place.y())) continue;
-        if (place.x() < (b.x() - a.x()) * (place.y() - a.y()) / (b.y() - a.y()) + a.x()) inside = !inside;
-    }
-    return inside;
-}
-
 /// Where along a ray its shadow on the ground crosses a ring, rising, of those between `first` and `last`.
 std::vector<double> crossings(const FoliageVolume& volume, const SceneRay& ray, double first, double last) {
     const Eigen::Vector2d origin = ray.origin.head<2>(), direction = ray.direction.head<2>();
@@ -81,7 +70,7 @@ void CrownStretches::add(const FoliageVolume& volume) {
     if (std::isfinite(last)) ends.push_back(last);
     for (double begin = first; const double end : ends) {
         const Eigen::Vector3d middle = ray_.origin + (begin + end) / 2 * ray_.direction;
-        if (is_inside(volume.ring, middle.head<2>())) stretches_.push_back({begin, end});
+        if (inside_ring(volume.ring, middle.head<2>())) stretches_.push_back({begin, end});
         begin = end;
     }
 }

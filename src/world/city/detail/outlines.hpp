@@ -55,9 +55,6 @@ struct Outlines {
 
 void turn_longitudes(Footprint& footprint, LongitudeTurn& turn);
 
-/// Whether a place is inside of a ring, by the crossings of a line from it.
-bool inside_ring(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& place);
-
 /// Places outlines and raises houses on them: the ground is level with the origin. Parts that cover at least half of a
 /// building's outline replace it; what they do not tell of height and material is the building's. Wide woods become
 /// several prisms, so that they follow the Earth. Buildings without a height are `settings.default_height` tall, woods
