@@ -19,6 +19,7 @@
 #include "base/core/words.hpp"
 
 namespace skyloop::inline world {
+namespace {
 
 /// One line of numbers; a table has at most three columns.
 struct NumberRow {
@@ -31,13 +32,6 @@ struct NumberTable {
     std::size_t header = 0;  ///< index among those that were allowed
     std::vector<NumberRow> rows;
 };
-
-/// Reads comma-separated numbers under one of `headers`. Empty lines and those that start with # are passed over. Fails
-/// with `input` and FILE:LINE for another header, a cell that is no number, a line of another width, or no rows.
-Result<NumberTable> read_number_table(std::string_view text, std::string_view name,
-                                      std::span<const std::string_view> headers);
-
-namespace {
 
 constexpr std::string_view table_blanks = " \t\r";
 
@@ -56,8 +50,8 @@ std::string read_cells(std::string_view line, std::size_t columns, std::array<do
     return count == columns ? std::string() : fmt::format("found {} columns; expected {}", count, columns);
 }
 
-}  // namespace
-
+/// Reads comma-separated numbers under one of `headers`. Empty lines and those that start with # are passed over. Fails
+/// with `input` and FILE:LINE for another header, a cell that is no number, a line of another width, or no rows.
 Result<NumberTable> read_number_table(std::string_view text, std::string_view name,
                                       std::span<const std::string_view> headers) {
     NumberTable table;
@@ -89,8 +83,6 @@ Result<NumberTable> read_number_table(std::string_view text, std::string_view na
                     fmt::format("{}:{}: found no rows; expected at least one line of numbers", name, number));
     return table;
 }
-
-namespace {
 
 // Gains by azimuth, then elevation, degrees.
 using PatternRows = std::map<double, std::map<double, double>>;

@@ -19,6 +19,7 @@
 #include "world/propagation/reflection.hpp"
 
 namespace skyloop::inline world {
+namespace {
 
 /// A way to the antenna, in the scene's frame.
 struct ArrivingRay {
@@ -65,11 +66,6 @@ private:
     std::vector<SurfaceMaterial> materials_;
 };
 
-/// East, north, up as azimuth and elevation.
-SkyDirection sky_direction(const Eigen::Vector3d& enu);
-
-namespace {
-
 constexpr double faintest_ray = 0.01;  // −40 dB
 constexpr Angle knife_edge_lag =
     Angle::degrees(45);  // of the bent ray deep in the shadow (ITU-R P.526, Fresnel integral)
@@ -81,8 +77,7 @@ SceneRay line_to(const ArrivingSatellite& arriving) {
     return {arriving.observer.position, way.normalized()};
 }
 
-}  // namespace
-
+/// East, north, up as azimuth and elevation.
 SkyDirection sky_direction(const Eigen::Vector3d& enu) {
     const double azimuth = std::atan2(enu.x(), enu.y());
     return {Angle::radians(azimuth < 0 ? azimuth + 2 * std::numbers::pi : azimuth),
@@ -176,8 +171,6 @@ DirectLoss SceneRays::direct_loss(const ArrivingSatellite& arriving) const {
         loss.edges += knife_edge_loss(knife_edge_parameter(-edge.detour, edge.distance, arriving.carrier));
     return loss;
 }
-
-namespace {
 
 const Decibels half_power(10 * std::log10(2.0));
 
