@@ -15,15 +15,6 @@ namespace style = plot_style;
 
 constexpr double tick_size = 11;
 
-// As style::round_step, of spans of any size.
-double axis_step(double span, int most) {
-    const double raw = span / most;
-    const double power = std::pow(10, std::floor(std::log10(raw)));
-    for (const double factor : {1.0, 2.0, 5.0})
-        if (factor * power * (1 + 1e-9) >= raw) return factor * power;
-    return 10 * power;
-}
-
 std::string short_number(double value) { return fmt::format("{:.4g}", value); }
 
 }  // namespace
@@ -60,7 +51,7 @@ AxisScale axis_over(double low, double high, int most) {
     } else if (low >= 0 && low < zero_is_near * high) {
         low = 0;
     }
-    return {low, high, axis_step(high - low, most)};
+    return {low, high, style::round_step(high - low, most, 0)};
 }
 
 ShownRange shown_range(std::span<const double> sorted) {
@@ -91,17 +82,11 @@ void draw_bottom_axis(SvgDocument& svg, const PanelArea& area, const AxisScale& 
     for (const double mark : axis.marks()) {
         const double x = area.x(axis, mark);
         svg.line({x, area.top}, {x, area.bottom()}, {.stroke = style::faint_grid});
-        svg.text({.at = {x, area.bottom() + 14},
-                  .text = axis.label(mark),
-                  .size = tick_size,
-                  .fill = style::faint_ink,
-                  .anchor = "middle"});
+        style::note(svg, {x, area.bottom() + 14}, axis.label(mark), tick_size, "middle");
     }
     if (!name.empty())
-        svg.text({.at = {area.left + area.width / 2, area.bottom() + 33},
-                  .text = fitting_text(name, area.width + 40, 12),
-                  .size = 12,
-                  .anchor = "middle"});
+        style::axis_name(svg, {area.left + area.width / 2, area.bottom() + 33},
+                         fitting_text(name, area.width + 40, 12));
 }
 
 void draw_left_axis(SvgDocument& svg, const PanelArea& area, const AxisScale& axis, const std::string& name) {
@@ -109,19 +94,12 @@ void draw_left_axis(SvgDocument& svg, const PanelArea& area, const AxisScale& ax
     for (const double mark : axis.marks()) {
         const double y = area.y(axis, mark);
         svg.line({area.left, y}, {area.right(), y}, {.stroke = style::faint_grid});
-        svg.text({.at = {area.left - 7, y},
-                  .text = axis.label(mark),
-                  .size = tick_size,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+        style::note(svg, {area.left - 7, y}, axis.label(mark), tick_size, "end");
         widest = std::max(widest, style::text_width(axis.label(mark), tick_size));
     }
     if (!name.empty())
-        svg.text({.at = {area.left - widest - 19, area.top + area.height / 2},
-                  .text = fitting_text(name, area.height + 40, 12),
-                  .size = 12,
-                  .anchor = "middle",
-                  .rotation_deg = -90});
+        style::axis_name(svg, {area.left - widest - 19, area.top + area.height / 2},
+                         fitting_text(name, area.height + 40, 12), -90);
 }
 
 std::string fitting_text(const std::string& text, double width, double size) {

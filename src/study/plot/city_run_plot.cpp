@@ -60,21 +60,14 @@ void draw_strip_frame(SvgDocument& svg, const Strip& strip, const std::string& n
     const double step = style::round_step(strip.highest, 4);
     for (double value = 0; value <= strip.highest * (1 + 1e-9); value += step) {
         svg.line(strip.at(0, value), strip.at(strip.duration, value), {.stroke = style::faint_grid});
-        svg.text({.at = {strip_left - 6, strip.at(0, value).y},
-                  .text = fmt::format("{:g}", value),
-                  .size = 10.5,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+        style::note(svg, {strip_left - 6, strip.at(0, value).y}, fmt::format("{:g}", value), 10.5, "end");
     }
     svg.text({.at = {strip_left, strip.top - 11}, .text = name, .size = 12.5, .bold = true});
     if (!with_times) return;
     const double time_step = style::round_step(strip.duration, 10);
     for (double time = 0; time <= strip.duration * (1 + 1e-9); time += time_step)
-        svg.text({.at = {strip.at(time, 0).x, strip.top + strip.height + 13},
-                  .text = fmt::format("{:g} s", time),
-                  .size = 10.5,
-                  .fill = style::faint_ink,
-                  .anchor = "middle"});
+        style::note(svg, {strip.at(time, 0).x, strip.top + strip.height + 13}, fmt::format("{:g} s", time), 10.5,
+                    "middle");
 }
 
 // The area between two stacked counts.
@@ -109,7 +102,7 @@ void draw_counts(SvgDocument& svg, const std::vector<StripBin>& bins, double top
         const std::string word(style::reception_word(kind));
         svg.rectangle({x, top - 17}, {12, 12}, 2,
                       {.fill = style::reception_colour(kind), .opacity = kind == Reception::blocked ? 0.25 : 0.85});
-        svg.text({.at = {x + 18, top - 11}, .text = word, .size = 11.5, .fill = style::faint_ink});
+        style::note(svg, {x + 18, top - 11}, word, 11.5);
         x += 18 + style::text_width(word, 11.5) + 18;
     }
     svg.end_group();
@@ -199,29 +192,17 @@ void draw_count_legend(SvgDocument& svg, SvgPoint at, int most) {
     for (int k = 0; k <= shown; ++k) {
         const int count = shown > 0 ? k * most / shown : 0;
         svg.rectangle({at.x + k * width, at.y}, {width, 12}, 0, {.fill = count_colour(count, most)});
-        svg.text({.at = {at.x + (k + 0.5) * width, at.y + 21},
-                  .text = std::to_string(count),
-                  .size = 10,
-                  .fill = style::faint_ink,
-                  .anchor = "middle"});
+        style::note(svg, {at.x + (k + 0.5) * width, at.y + 21}, std::to_string(count), 10, "middle");
     }
-    svg.text({.at = {at.x + (shown + 1) * width + 10, at.y + 6},
-              .text = "satellites in line of sight",
-              .size = 11.5,
-              .fill = style::faint_ink});
+    style::note(svg, {at.x + (shown + 1) * width + 10, at.y + 6}, "satellites in line of sight", 11.5);
 }
 
 }  // namespace
 
 std::string city_run_plot_svg(const CityRun& run, const UrbanScene* scene, const std::string& title) {
-    SvgDocument svg(city_run_plot_width, city_run_plot_height, title);
-    style::draw_sheet(svg, {city_run_plot_width, city_run_plot_height});
-    svg.text({.at = {40, 30}, .text = title, .size = 17, .bold = true});
-    svg.text({.at = {40, 54},
-              .text = fmt::format("from {}   ·   {} epochs   ·   satellites above {:g}°", run.start, run.epochs.size(),
-                                  run.lowest.deg()),
-              .size = 12,
-              .fill = style::faint_ink});
+    SvgDocument svg = style::titled_sheet({city_run_plot_width, city_run_plot_height}, {40, 30}, title,
+                                          fmt::format("from {}   ·   {} epochs   ·   satellites above {:g}°", run.start,
+                                                      run.epochs.size(), run.lowest.deg()));
     if (run.epochs.empty()) return svg.str();
     const LocalFrame frame = scene ? scene->frame() : LocalFrame(run.epochs.front().truth);
     const std::vector<Eigen::Vector2d> points = track_points(run, frame);

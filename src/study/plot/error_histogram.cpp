@@ -48,10 +48,7 @@ double values_reach(const ScatterPanel& a, const ScatterPanel& b) {
         std::vector<double> sizes;
         for (const double v : error_values(panel->cloud.errors, panel->quantity))
             sizes.push_back(std::abs(v));
-        if (sizes.empty()) continue;
-        const std::size_t place = sizes.size() - 1 - sizes.size() / 500;
-        std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(place), sizes.end());
-        reach = std::max(reach, sizes[place]);
+        reach = std::max(reach, all_but_wildest(std::move(sizes)));
     }
     return reach;
 }
@@ -79,29 +76,14 @@ void draw_histogram_axes(SvgDocument& svg, const ScatterPanel& panel, const Hist
     for (double share = 0; share <= 1.08 * scale.most; share += step_y) {
         const double y = bottom - share * scale.pixels_per_percent();
         svg.line({panel.left, y}, {panel.left + panel_width, y}, {.stroke = style::faint_grid});
-        svg.text({.at = {panel.left - 7, y},
-                  .text = scatter_tick(share, step_y),
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+        style::note(svg, {panel.left - 7, y}, scatter_tick(share, step_y), 11, "end");
     }
     const double extent = scale.to() - scale.from;
     const double step = style::round_step(extent, 8);
     for (double t = std::ceil(scale.from / step - 1e-9) * step; t <= scale.to() + extent * 1e-9; t += step)
-        svg.text({.at = {panel.left + scale.place(t) * panel_width, bottom + 13},
-                  .text = scatter_tick(t, step),
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = "middle"});
-    svg.text({.at = {panel.left + panel_width / 2, bottom + 32},
-              .text = error_axis_name(panel.quantity) + ", m",
-              .size = 12,
-              .anchor = "middle"});
-    svg.text({.at = {panel.left - 40, bottom - histogram_height / 2},
-              .text = "fixes, %",
-              .size = 12,
-              .anchor = "middle",
-              .rotation_deg = -90});
+        style::note(svg, {panel.left + scale.place(t) * panel_width, bottom + 13}, scatter_tick(t, step), 11, "middle");
+    style::axis_name(svg, {panel.left + panel_width / 2, bottom + 32}, error_axis_name(panel.quantity) + ", m");
+    style::axis_name(svg, {panel.left - 40, bottom - histogram_height / 2}, "fixes, %", -90);
 }
 
 // The shape of the other cloud's histogram, so that the eye need not cross the gap between the panels.
@@ -156,6 +138,13 @@ void draw_histogram_figures(SvgDocument& svg, const ScatterPanel& panel) {
 }
 
 }  // namespace
+
+double all_but_wildest(std::vector<double> sizes) {
+    if (sizes.empty()) return 0;
+    const std::size_t place = sizes.size() - 1 - sizes.size() / 500;
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(place), sizes.end());
+    return sizes[place];
+}
 
 std::string scatter_tick(double value, double step) {
     const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);

@@ -164,7 +164,7 @@ void draw_distribution_legend(SvgDocument& svg, const DistributionPlot& plot, co
     constexpr double y = 24;
     const auto entry = [&](double x, const SvgStyle& line, const char* label) {
         svg.line({x, y}, {x + 24, y}, line);
-        svg.text({.at = {x + 30, y}, .text = label, .size = 11.5, .fill = style::faint_ink});
+        style::note(svg, {x + 30, y}, label, 11.5);
     };
     entry(66, {.stroke = style::accent, .width = 1.8}, "median");
     entry(156, {.stroke = style::ink, .width = 1.3, .dash = "6 4"}, "95th percentile");
@@ -174,19 +174,14 @@ void draw_distribution_legend(SvgDocument& svg, const DistributionPlot& plot, co
     if (plot.sorted.size() > most_distribution_steps)
         note += fmt::format("{}function drawn at {} of its {} steps", note.empty() ? "" : "; ", most_distribution_steps,
                             plot.sorted.size());
-    if (!note.empty())
-        svg.text({.at = {distribution_plot_width - 22, steps_area.bottom() + 51},
-                  .text = note,
-                  .size = 10.5,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+    if (!note.empty()) style::note(svg, {distribution_plot_width - 22, steps_area.bottom() + 51}, note, 10.5, "end");
 }
 
 }  // namespace
 
 SvgDocument distribution_plot(const DistributionPlot& plot) {
-    SvgDocument svg(distribution_plot_width, distribution_plot_height, "Distribution of " + plot.axis);
-    style::draw_sheet(svg, {distribution_plot_width, distribution_plot_height});
+    SvgDocument svg =
+        style::blank_sheet({distribution_plot_width, distribution_plot_height}, "Distribution of " + plot.axis);
     if (plot.sorted.empty()) return svg;
     const ShownRange range = shown_range(plot.sorted);
     AxisScale axis = axis_over(range.low, range.high, 7);
@@ -245,8 +240,7 @@ void draw_trend_ranges(SvgDocument& svg, const TrendPlot& plot, const AxisScale&
 }  // namespace
 
 SvgDocument trend_plot(const TrendPlot& plot) {
-    SvgDocument svg(trend_plot_width, trend_plot_height, plot.title);
-    style::draw_sheet(svg, {trend_plot_width, trend_plot_height});
+    SvgDocument svg = style::blank_sheet({trend_plot_width, trend_plot_height}, plot.title);
     if (plot.dots.empty()) return svg;
     const std::vector<double> heights = sorted_heights(plot.dots);
     const ShownRange range = shown_range(heights);
@@ -262,12 +256,7 @@ SvgDocument trend_plot(const TrendPlot& plot) {
     std::string note = outside_words(range, heights);
     if (drawn < plot.dots.size())
         note = fmt::format("{} of {} runs drawn{}{}", drawn, plot.dots.size(), note.empty() ? "" : "; ", note);
-    if (!note.empty())
-        svg.text({.at = {trend_plot_width - 20, trend_area.bottom() + 53},
-                  .text = note,
-                  .size = 10.5,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+    if (!note.empty()) style::note(svg, {trend_plot_width - 20, trend_area.bottom() + 53}, note, 10.5, "end");
     return svg;
 }
 

@@ -89,33 +89,20 @@ void draw_panel_axes(SvgDocument& svg, const TimePanel& panel, bool with_time) {
     for (double value = std::ceil(panel.least / step) * step; value <= panel.most; value += step) {
         const SvgPoint p = panel.at(0, value);
         svg.line(p, {panel.corner.x + panel.size.x, p.y}, {.stroke = style::faint_grid});
-        svg.text({.at = {p.x - 6, p.y},
-                  .text = fmt::format("{:g}", std::abs(value) < step / 2 ? 0 : value),
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+        style::note(svg, {p.x - 6, p.y}, fmt::format("{:g}", std::abs(value) < step / 2 ? 0 : value), 11, "end");
     }
     const double time_step = style::round_step(panel.span, 8);
     for (double t = 0; t <= panel.span * (1 + 1e-9); t += time_step) {
         const SvgPoint p = panel.at(t, panel.least);
         svg.line(p, {p.x, panel.corner.y}, {.stroke = style::faint_grid});
-        if (with_time)
-            svg.text({.at = {p.x, p.y + 13},
-                      .text = fmt::format("{:g}", t),
-                      .size = 11,
-                      .fill = style::faint_ink,
-                      .anchor = "middle"});
+        if (with_time) style::note(svg, {p.x, p.y + 13}, fmt::format("{:g}", t), 11, "middle");
     }
     svg.text({.at = {panel.corner.x, panel.corner.y - 10},
               .text = fmt::format("{}, {}", panel.name, panel.unit),
               .size = 12,
               .bold = true});
     if (with_time)
-        svg.text({.at = {panel.corner.x + panel.size.x, panel.corner.y + panel.size.y + 28},
-                  .text = "time, s",
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+        style::note(svg, {panel.corner.x + panel.size.x, panel.corner.y + panel.size.y + 28}, "time, s", 11, "end");
 }
 
 void draw_time_panel(SvgDocument& svg, TimePanel panel, std::span<const PathDot> dots, bool with_time) {
@@ -189,11 +176,8 @@ void draw_plan(SvgDocument& svg, std::span<const PathDot> dots, SvgPoint corner,
     svg.begin_group("speed key");
     for (int k = 0; k < path_colours; ++k)
         svg.rectangle({key.x + 8.0 * k, key.y - 4}, {8.5, 8}, 0, {.fill = path_colour(k)});
-    svg.text({.at = {key.x - 6, key.y}, .text = "0", .size = 11, .fill = style::faint_ink, .anchor = "end"});
-    svg.text({.at = {key.x + 8 * path_colours + 6, key.y},
-              .text = fmt::format("{:.3g} m/s", fastest),
-              .size = 11,
-              .fill = style::faint_ink});
+    style::note(svg, {key.x - 6, key.y}, "0", 11, "end");
+    style::note(svg, {key.x + 8 * path_colours + 6, key.y}, fmt::format("{:.3g} m/s", fastest));
     svg.end_group();
 }
 
@@ -201,8 +185,7 @@ void draw_plan(SvgDocument& svg, std::span<const PathDot> dots, SvgPoint corner,
 
 std::string path_plot_svg(std::span<const PathSample> samples, const std::string& title) {
     namespace style = plot_style;
-    SvgDocument svg(path_plot_width, path_plot_height, title);
-    style::draw_sheet(svg, {path_plot_width, path_plot_height});
+    SvgDocument svg = style::blank_sheet({path_plot_width, path_plot_height}, title);
     svg.text({.at = {24, 34}, .text = title, .size = 16, .bold = true});
     const std::vector<PathDot> dots = path_dots(samples);
     if (dots.empty()) return svg.str();

@@ -50,13 +50,12 @@ void draw_row_label(SvgDocument& svg, const RowLayout& layout, const std::string
 }
 
 void draw_row_note(SvgDocument& svg, const RowLayout& layout, const std::string& note, double y) {
-    svg.text({.at = {layout.panel.right() + 10, y}, .text = note, .size = 11, .fill = style::faint_ink});
+    style::note(svg, {layout.panel.right() + 10, y}, note);
 }
 
 SvgDocument row_picture(const RowLayout& layout, const AxisScale& axis, const std::string& axis_name,
                         const std::string& title) {
-    SvgDocument svg(layout.width, layout.height, title);
-    style::draw_sheet(svg, {layout.width, layout.height});
+    SvgDocument svg = style::blank_sheet({layout.width, layout.height}, title);
     svg.rectangle({layout.panel.left, layout.panel.top}, {layout.panel.width, layout.panel.height}, 0,
                   {.fill = style::panel});
     draw_bottom_axis(svg, layout.panel, axis, axis_name);
@@ -181,21 +180,12 @@ void draw_map_labels(SvgDocument& svg, const RateMap& map, const MapLayout& layo
                   .rotation_deg = layout.tilted ? -tilt_deg : 0});
     }
     for (std::size_t i = 0; i < map.rows.size(); ++i)
-        svg.text({.at = {layout.left - 8, layout.bottom - cell_height * (static_cast<double>(i) + 0.5)},
-                  .text = fitting_text(map.rows[i], longest_map_label, map_text_size),
-                  .size = map_text_size,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+        style::note(svg, {layout.left - 8, layout.bottom - cell_height * (static_cast<double>(i) + 0.5)},
+                    fitting_text(map.rows[i], longest_map_label, map_text_size), map_text_size, "end");
     const double across = rate_map_width - layout.left - 24;
-    svg.text({.at = {layout.left + across / 2, layout.height - 55},
-              .text = fitting_text(map.column_axis, across, 12),
-              .size = 12,
-              .anchor = "middle"});
-    svg.text({.at = {20, (layout.top + layout.bottom) / 2},
-              .text = fitting_text(map.row_axis, std::max(60.0, layout.bottom - layout.top + 20), 12),
-              .size = 12,
-              .anchor = "middle",
-              .rotation_deg = -90});
+    style::axis_name(svg, {layout.left + across / 2, layout.height - 55}, fitting_text(map.column_axis, across, 12));
+    style::axis_name(svg, {20, (layout.top + layout.bottom) / 2},
+                     fitting_text(map.row_axis, std::max(60.0, layout.bottom - layout.top + 20), 12), -90);
 }
 
 // The colours begin at a round percentage at or below the lowest rate.
@@ -249,23 +239,15 @@ void draw_map_legend(SvgDocument& svg, const MapLayout& layout, double lowest) {
     for (int i = 0; i < steps; ++i)
         svg.rectangle({layout.left + i * width, y}, {width + 0.2, 10}, 0,
                       {.fill = style::ramp_colour(style::value_ramp, (i + 0.5) / steps)});
-    svg.text({.at = {layout.left - 8, y + 5},
-              .text = fmt::format("{:.0f}", 100 * lowest),
-              .size = map_text_size,
-              .fill = style::faint_ink,
-              .anchor = "end"});
-    svg.text({.at = {layout.left + steps * width + 8, y + 5},
-              .text = "100 % passed",
-              .size = map_text_size,
-              .fill = style::faint_ink});
+    style::note(svg, {layout.left - 8, y + 5}, fmt::format("{:.0f}", 100 * lowest), map_text_size, "end");
+    style::note(svg, {layout.left + steps * width + 8, y + 5}, "100 % passed", map_text_size);
 }
 
 }  // namespace
 
 SvgDocument rate_map_plot(const RateMap& map) {
     const MapLayout layout = map_layout(map);
-    SvgDocument svg(rate_map_width, layout.height, map.title);
-    style::draw_sheet(svg, {rate_map_width, layout.height});
+    SvgDocument svg = style::blank_sheet({rate_map_width, layout.height}, map.title);
     if (map.cells.size() != map.rows.size() * map.columns.size() || map.cells.empty()) return svg;
     const double lowest = lowest_colour(map);
     draw_map_cells(svg, map, layout, lowest);

@@ -45,10 +45,7 @@ double scatter_reach(const ScatterPanel& a, const ScatterPanel& b) {
         std::vector<double> largest;
         for (std::size_t i = 0; i < panel->cloud.errors.east.size(); ++i)
             largest.push_back(std::max(std::abs(panel->cloud.errors.east[i]), std::abs(panel->cloud.errors.north[i])));
-        if (largest.empty()) continue;
-        const std::size_t place = largest.size() - 1 - largest.size() / 500;
-        std::nth_element(largest.begin(), largest.begin() + static_cast<std::ptrdiff_t>(place), largest.end());
-        reach = std::max(reach, largest[place]);
+        reach = std::max(reach, all_but_wildest(std::move(largest)));
     }
     const double figures = std::max(figures_reach(a), figures_reach(b));
     return 1.05 * (figures < 2 * reach ? std::max(reach, figures) : reach);
@@ -65,23 +62,11 @@ void draw_cloud_axes(SvgDocument& svg, const ScatterPanel& panel, double reach) 
         const double y = centre.y - t * scale;
         svg.line({x, cloud_top}, {x, cloud_top + cloud_size}, {.stroke = colour});
         svg.line({panel.left, y}, {panel.left + cloud_size, y}, {.stroke = colour});
-        svg.text({.at = {x, cloud_top + cloud_size + 13},
-                  .text = scatter_tick(t, step),
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = "middle"});
-        svg.text({.at = {panel.left - 7, y},
-                  .text = scatter_tick(t, step),
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = "end"});
+        style::note(svg, {x, cloud_top + cloud_size + 13}, scatter_tick(t, step), 11, "middle");
+        style::note(svg, {panel.left - 7, y}, scatter_tick(t, step), 11, "end");
     }
-    svg.text({.at = {centre.x, cloud_top + cloud_size + 32}, .text = "east error, m", .size = 12, .anchor = "middle"});
-    svg.text({.at = {panel.left - 40, centre.y},
-              .text = "north error, m",
-              .size = 12,
-              .anchor = "middle",
-              .rotation_deg = -90});
+    style::axis_name(svg, {centre.x, cloud_top + cloud_size + 32}, "east error, m");
+    style::axis_name(svg, {panel.left - 40, centre.y}, "north error, m", -90);
 }
 
 // At most this many dots: more hide each other and make the file large.
@@ -182,12 +167,12 @@ std::string distance_caption(const ScatterPanel& a, const ScatterPanel& b) {
 
 void draw_scatter_heading(SvgDocument& svg, const ScatterPanel& a, const ScatterPanel& b) {
     svg.text({.at = {28, 32}, .text = "Position errors", .size = 17, .bold = true});
-    svg.text({.at = {28, 57}, .text = article_caption(a, b), .size = 12.5, .fill = style::faint_ink});
-    svg.text({.at = {28, 77}, .text = distance_caption(a, b), .size = 12.5, .fill = style::faint_ink});
+    style::note(svg, {28, 57}, article_caption(a, b), 12.5);
+    style::note(svg, {28, 77}, distance_caption(a, b), 12.5);
     constexpr double right = scatter_plot_width - 28;
     const auto entry = [&](double y, const SvgStyle& line, const char* label) {
         svg.line({right - 196, y}, {right - 168, y}, line);
-        svg.text({.at = {right - 160, y}, .text = label, .size = 11.5, .fill = style::faint_ink});
+        style::note(svg, {right - 160, y}, label, 11.5);
     };
     entry(30, {.stroke = style::accent, .width = 1.6}, "mean and 95 % ellipse");
     entry(50, {.stroke = style::ink, .width = 1.6, .dash = "6 4"}, "95 % of the errors");
@@ -216,9 +201,8 @@ std::string scatter_plot_svg(const ScatterCloud& candidate, const ScatterCloud& 
     const ScatterPanel a = scatter_panel(candidate, candidate_colour, 0, quantity);
     const ScatterPanel b = scatter_panel(reference, reference_colour, 1, quantity);
     const double reach = scatter_reach(a, b);
-    SvgDocument svg(scatter_plot_width, scatter_plot_height,
-                    fmt::format("Position errors: {}, {}", candidate.name, reference.name));
-    style::draw_sheet(svg, {scatter_plot_width, scatter_plot_height});
+    SvgDocument svg = style::blank_sheet({scatter_plot_width, scatter_plot_height},
+                                         fmt::format("Position errors: {}, {}", candidate.name, reference.name));
     draw_scatter_heading(svg, a, b);
     draw_cloud(svg, a, reach);
     draw_cloud(svg, b, reach);

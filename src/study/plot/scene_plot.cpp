@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 
-#include "base/time/utc_time.hpp"
 #include "detail/axes_and_labels.hpp"
 #include "detail/plan_view.hpp"
 #include "detail/plot_style.hpp"
@@ -89,10 +88,7 @@ void draw_height_legend(SvgDocument& svg, double highest) {
     for (int k = 0; k < steps; ++k)
         svg.rectangle({at.x + k * width, at.y - 6}, {width + 0.3, 12}, 0,
                       {.fill = style::ramp_colour(style::height_ramp, k / (steps - 1.0))});
-    svg.text({.at = {at.x + steps * width + 8, at.y},
-              .text = fmt::format("0 … {:.0f} m above ground", highest),
-              .size = 11.5,
-              .fill = style::faint_ink});
+    style::note(svg, {at.x + steps * width + 8, at.y}, fmt::format("0 … {:.0f} m above ground", highest), 11.5);
     svg.end_group();
 }
 
@@ -104,7 +100,7 @@ void draw_ray_legend(SvgDocument& svg) {
         svg.line(
             {x, y}, {x + 22, y},
             {.stroke = style::reception_colour(kind), .width = 2, .dash = kind == Reception::blocked ? "3 4" : ""});
-        svg.text({.at = {x + 28, y}, .text = word, .size = 11.5, .fill = style::faint_ink});
+        style::note(svg, {x + 28, y}, word, 11.5);
         x += 28 + style::text_width(word, 11.5) + 14;
     }
 }
@@ -127,13 +123,8 @@ Eigen::AlignedBox2d scene_plot_area(const Eigen::Vector3d& middle, double radius
 
 std::string scene_plot_svg(const UrbanScene& scene, const ScenePlot& plot) {
     const std::string title = plot.title.empty() ? "City from above" : plot.title;
-    SvgDocument svg(scene_plot_width, scene_plot_height, title);
-    style::draw_sheet(svg, {scene_plot_width, scene_plot_height});
-    svg.text({.at = {30, 30}, .text = title, .size = 17, .bold = true});
-    svg.text({.at = {30, 54},
-              .text = plot.subtitle.empty() ? scene_summary(scene) : plot.subtitle,
-              .size = 12,
-              .fill = style::faint_ink});
+    SvgDocument svg = style::titled_sheet({scene_plot_width, scene_plot_height}, {30, 30}, title,
+                                          plot.subtitle.empty() ? scene_summary(scene) : plot.subtitle);
     const PlanView view(plot.area.value_or(ground_box(scene)), scene_corner, scene_size);
     const double highest = draw_city(svg, scene, view);
     if (plot.observer) draw_rays(svg, view, plot);
@@ -154,27 +145,25 @@ constexpr SvgPoint coverage_size{760, 740};
 constexpr int coverage_levels = 24;
 constexpr int most_drawn_cells = 500;  // a side
 
-// How a quantity is called and shown.
+// What a quantity is, how it is called and shown.
 struct CoverageScale {
+    std::optional<double> (*value)(const CoverageFigures&);
     std::string_view title, unit;
     double low = 0, high = 1;
     bool low_is_good = false;
 };
 
-CoverageScale coverage_scale(CoverageQuantity quantity) {
-    switch (quantity) {
-        case CoverageQuantity::line_of_sight:
-            return {"Satellites in line of sight, mean", "", 0, 12};
-        case CoverageQuantity::satellites:
-            return {"Satellites direct or reflected, mean", "", 0, 12};
-        case CoverageQuantity::hdop:
-            return {"HDOP, median", "", 0.5, 5, true};
-        case CoverageQuantity::fix:
-            return {"Time with four satellites or more in line of sight", " %", 0, 100};
-        case CoverageQuantity::error:
-            return {"Horizontal error by reflections, mean", " m", 0, 50, true};
-    }
-    return {};
+// In the order of CoverageQuantity.
+constexpr std::array<CoverageScale, 5> coverage_scales{
+    {{[](const auto& f) { return std::optional(f.line_of_sight); }, "Satellites in line of sight, mean", "", 0, 12},
+     {[](const auto& f) { return std::optional(f.tracked()); }, "Satellites direct or reflected, mean", "", 0, 12},
+     {[](const auto& f) { return f.hdop; }, "HDOP, median", "", 0.5, 5, true},
+     {[](const auto& f) { return std::optional(100 * f.line_of_sight_fix_share); },
+      "Time with four satellites or more in line of sight", " %", 0, 100},
+     {[](const auto& f) { return f.reflection_error; }, "Horizontal error by reflections, mean", " m", 0, 50, true}}};
+
+constexpr const CoverageScale& coverage_scale(CoverageQuantity quantity) {
+    return coverage_scales[static_cast<std::size_t>(quantity)];
 }
 
 // The ends of counts follow what is there, so that open skies and deep canyons both show their differences.
@@ -260,53 +249,31 @@ void draw_value_bar(SvgDocument& svg, const CoverageScale& scale) {
         svg.rectangle({at.x + k * width, at.y - 8}, {width + 0.3, 14}, 0,
                       {.fill = coverage_colour(scale.low_is_good ? coverage_levels - 1 - k : k)});
     for (int k = 0; k <= 4; ++k)
-        svg.text({.at = {at.x + k * coverage_levels * width / 4, at.y + 18},
-                  .text = fmt::format("{}{:.3g}{}", k == 4 && scale.low_is_good ? "≥ " : "",
-                                      scale.low + (scale.high - scale.low) * k / 4, scale.unit),
-                  .size = 11,
-                  .fill = style::faint_ink,
-                  .anchor = k == 0 ? "start" : "middle"});
+        style::note(svg, {at.x + k * coverage_levels * width / 4, at.y + 18},
+                    fmt::format("{}{:.3g}{}", k == 4 && scale.low_is_good ? "≥ " : "",
+                                scale.low + (scale.high - scale.low) * k / 4, scale.unit),
+                    11, k == 0 ? "start" : "middle");
     svg.rectangle({420, at.y - 8}, {14, 14}, 0, {.fill = style::faint_grid, .stroke = style::grid});
-    svg.text({.at = {440, at.y}, .text = "no value, or inside a building", .size = 11, .fill = style::faint_ink});
+    style::note(svg, {440, at.y}, "no value, or inside a building");
     svg.end_group();
 }
 
 std::string coverage_subtitle(const CoverageMap& map) {
-    const auto time = [](GpsTime t) {
-        std::string text = format_utc(to_utc(t, LeapSeconds::announced()), 0);
-        text.replace(text.find('T'), 1, " ").pop_back();
-        return text;
-    };
-    return fmt::format("{} … {} UTC, {} epochs   ·   {} × {} cells of {:.3g} × {:.3g} m", time(map.start),
-                       time(map.end), map.epochs, map.grid.columns, map.grid.rows, map.grid.width() / map.grid.columns,
-                       map.grid.height() / map.grid.rows);
+    return fmt::format("{} … {} UTC, {} epochs   ·   {} × {} cells of {:.3g} × {:.3g} m", style::utc_words(map.start),
+                       style::utc_words(map.end), map.epochs, map.grid.columns, map.grid.rows,
+                       map.grid.width() / map.grid.columns, map.grid.height() / map.grid.rows);
 }
 
 }  // namespace
 
 std::optional<double> coverage_value(const CoverageCell& cell, CoverageQuantity quantity) {
-    if (!cell.figures) return std::nullopt;
-    switch (quantity) {
-        case CoverageQuantity::line_of_sight:
-            return cell.figures->line_of_sight;
-        case CoverageQuantity::satellites:
-            return cell.figures->tracked();
-        case CoverageQuantity::hdop:
-            return cell.figures->hdop;
-        case CoverageQuantity::fix:
-            return 100 * cell.figures->line_of_sight_fix_share;
-        case CoverageQuantity::error:
-            return cell.figures->reflection_error;
-    }
-    return std::nullopt;
+    return cell.figures ? coverage_scale(quantity).value(*cell.figures) : std::nullopt;
 }
 
 std::string coverage_plot_svg(const CoverageMap& map, CoverageQuantity quantity, const UrbanScene* scene) {
     const std::string title(coverage_scale(quantity).title);
-    SvgDocument svg(coverage_plot_width, coverage_plot_height, title);
-    style::draw_sheet(svg, {coverage_plot_width, coverage_plot_height});
-    svg.text({.at = {30, 30}, .text = title, .size = 17, .bold = true});
-    svg.text({.at = {30, 54}, .text = coverage_subtitle(map), .size = 12, .fill = style::faint_ink});
+    SvgDocument svg =
+        style::titled_sheet({coverage_plot_width, coverage_plot_height}, {30, 30}, title, coverage_subtitle(map));
     const PlanView view(coverage_area(map), coverage_corner, coverage_size);
     draw_cells(svg, map, quantity, view);
     if (scene) draw_city(svg, *scene, view, false);

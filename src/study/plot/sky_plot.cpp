@@ -6,7 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "base/time/utc_time.hpp"
 #include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
@@ -60,9 +59,8 @@ std::string sky_subtitle(const SkyPlot& plot, std::size_t seen) {
     }
     const auto used =
         std::count_if(plot.satellites.begin(), plot.satellites.end(), [](const SkyPlotSatellite& s) { return s.used; });
-    std::string time = format_utc(to_utc(plot.time, LeapSeconds::announced()), 0);
-    time.replace(time.find('T'), 1, " ").pop_back();
-    std::string text = fmt::format("{} UTC   ·   {} above the horizon, {} used", time, seen, used);
+    std::string text =
+        fmt::format("{} UTC   ·   {} above the horizon, {} used", style::utc_words(plot.time), seen, used);
     if (plot.dop)
         text +=
             fmt::format("   ·   PDOP {:.2f}, HDOP {:.2f}, VDOP {:.2f}", plot.dop->pdop, plot.dop->hdop, plot.dop->vdop);
@@ -199,7 +197,7 @@ public:
     SvgPoint mark_place(double radius) const { return {x_ + radius, y_}; }
     void label(const std::string& text, double mark_width) {
         constexpr double size = 11.5;
-        svg_.text({.at = {x_ + mark_width + 6, y_}, .text = text, .size = size, .fill = style::faint_ink});
+        style::note(svg_, {x_ + mark_width + 6, y_}, text, size);
         x_ += mark_width + 6 + style::text_width(text, size) + 16;
     }
 
@@ -283,10 +281,8 @@ std::string sky_plot_svg(const SkyPlot& plot) {
                      [](const SkyPlotSatellite& a, const SkyPlotSatellite& b) { return a.used < b.used; });
 
     const std::string title = sky_title(plot);
-    SvgDocument svg(sky_plot_width, sky_plot_height, title);
-    style::draw_sheet(svg, {sky_plot_width, sky_plot_height});
-    svg.text({.at = {32, 32}, .text = title, .size = 17, .bold = true});
-    svg.text({.at = {32, 56}, .text = sky_subtitle(plot, seen.size()), .size = 12, .fill = style::faint_ink});
+    SvgDocument svg =
+        style::titled_sheet({sky_plot_width, sky_plot_height}, {32, 32}, title, sky_subtitle(plot, seen.size()));
     draw_sky_grid(svg, plot);
     draw_satellites(svg, seen);
     draw_legend(svg, plot, seen);

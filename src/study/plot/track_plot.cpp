@@ -10,7 +10,6 @@
 #include <set>
 
 #include "base/core/std_additions.hpp"
-#include "base/time/utc_time.hpp"
 #include "detail/axes_and_labels.hpp"
 #include "detail/plot_style.hpp"
 
@@ -137,8 +136,7 @@ void draw_tick_labels(SvgDocument& svg, const TrackScale& scale) {
     const double step = track_tick_step(scale);
     svg.begin_group("ticks");
     const auto number = [&](SvgPoint at, double value, std::string_view anchor) {
-        svg.text(
-            {.at = at, .text = fmt::format("{:.0f}", value), .size = 11, .fill = style::faint_ink, .anchor = anchor});
+        style::note(svg, at, fmt::format("{:.0f}", value), 11, anchor);
     };
     for (double t = -std::floor(w / step) * step; t <= w; t += step) {
         if (std::abs(t) > w - step / 4) continue;  // the corners belong to two axes
@@ -208,10 +206,8 @@ std::string track_subtitle(std::span<const SatelliteTrack> tracks) {
         if (!last || track.points.back().time > *last) last = track.points.back().time;
     }
     if (!first) return "no satellites";
-    std::string start = format_utc(to_utc(*first, LeapSeconds::announced()), 0);
-    start.replace(start.find('T'), 1, " ").pop_back();
     return fmt::format("{} satellite{}   ·   {} UTC and {:.4g} h on   ·   Earth-centred, Earth-fixed", count,
-                       count == 1 ? "" : "s", start, difference(*last, *first).value() / 3600);
+                       count == 1 ? "" : "s", style::utc_words(*first), difference(*last, *first).value() / 3600);
 }
 
 void draw_layer(SvgDocument& svg, const std::vector<TrackPaths>& all, const std::vector<std::string_view>& colours,
@@ -281,10 +277,8 @@ std::string track_plot_svg(std::span<const SatelliteTrack> tracks, const std::st
     for (const SatelliteTrack& track : tracks)
         all.push_back(track_paths(track, scale));
 
-    SvgDocument svg(track_plot_width, track_plot_height, title);
-    style::draw_sheet(svg, {track_plot_width, track_plot_height});
-    svg.text({.at = {32, 32}, .text = title, .size = 17, .bold = true});
-    svg.text({.at = {32, 56}, .text = track_subtitle(tracks), .size = 12, .fill = style::faint_ink});
+    SvgDocument svg =
+        style::titled_sheet({track_plot_width, track_plot_height}, {32, 32}, title, track_subtitle(tracks));
     draw_cube(svg, scale);
     draw_layer(svg, all, colours, Depth::back);
     draw_earth(svg, scale);

@@ -9,7 +9,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "base/time/utc_time.hpp"
 #include "study/analysis/scene_sky.hpp"
 #include "study/plot/svg_document.hpp"
 #include "world/gnss/satellite.hpp"
@@ -34,23 +36,9 @@ inline constexpr std::string_view skyline = "#c3cad3";
 
 /// One colour for each system, told apart by people with any kind of colour vision in pairs that meet in practice.
 constexpr std::string_view constellation_colour(Constellation constellation) {
-    switch (constellation) {
-        case Constellation::gps:
-            return "#1f5fbf";
-        case Constellation::sbas:
-            return "#7d5a2a";
-        case Constellation::galileo:
-            return "#0a8f72";
-        case Constellation::beidou:
-            return "#d17a00";
-        case Constellation::qzss:
-            return "#8040b5";
-        case Constellation::glonass:
-            return "#c8322f";
-        case Constellation::navic:
-            return "#0d8fb3";
-    }
-    return ink;
+    constexpr std::array<std::string_view, 7> colours{"#1f5fbf", "#7d5a2a", "#0a8f72", "#d17a00",
+                                                      "#8040b5", "#c8322f", "#0d8fb3"};
+    return colours[static_cast<std::size_t>(constellation)];
 }
 
 /// What a city does to a satellite: by colour, and by word.
@@ -62,9 +50,36 @@ constexpr std::string_view reception_word(Reception reception) {
                                            "blocked"}[static_cast<std::size_t>(reception)];
 }
 
-/// A sheet of paper of its own under the picture, so that it reads on a white page and on a dark one.
-inline void draw_sheet(SvgDocument& svg, SvgPoint size) {
+/// A line of small grey text: a figure at an axis, an entry of a legend.
+inline void note(SvgDocument& svg, SvgPoint at, std::string text, double size = 11, std::string_view anchor = "start") {
+    svg.text({.at = at, .text = std::move(text), .size = size, .fill = faint_ink, .anchor = anchor});
+}
+
+/// The name of an axis about its middle; `rotation_deg` is clockwise.
+inline void axis_name(SvgDocument& svg, SvgPoint at, std::string text, double rotation_deg = 0) {
+    svg.text({.at = at, .text = std::move(text), .size = 12, .anchor = "middle", .rotation_deg = rotation_deg});
+}
+
+/// A picture of `size` with a sheet of paper of its own, so that it reads on a white page and on a dark one.
+inline SvgDocument blank_sheet(SvgPoint size, std::string_view title) {
+    SvgDocument svg(size.x, size.y, title);
     svg.rectangle({0.5, 0.5}, {size.x - 1, size.y - 1}, 10, {.fill = paper, .stroke = grid});
+    return svg;
+}
+
+/// The same with its title written at `at` and a line of grey text below.
+inline SvgDocument titled_sheet(SvgPoint size, SvgPoint at, const std::string& title, std::string subtitle) {
+    SvgDocument svg = blank_sheet(size, title);
+    svg.text({.at = at, .text = title, .size = 17, .bold = true});
+    note(svg, {at.x, at.y + 24}, std::move(subtitle), 12);
+    return svg;
+}
+
+/// "2026-03-01 12:00:00", of UTC.
+inline std::string utc_words(GpsTime time) {
+    std::string text = format_utc(to_utc(time, LeapSeconds::announced()), 0);
+    text.replace(text.find('T'), 1, " ").pop_back();
+    return text;
 }
 
 /// Width of a line of text, pixels, on the safe side for common sans-serif fonts.
@@ -73,9 +88,10 @@ inline double text_width(std::string_view text, double size) {
     return 0.62 * size * static_cast<double>(characters);
 }
 
-/// The round number 1, 2 or 5 times a power of ten that divides `span` into at most `most` steps.
-inline double round_step(double span, int most) {
-    const double raw = std::max(span, 1e-9) / most;
+/// The round number 1, 2 or 5 times a power of ten that divides `span` into at most `most` steps. @param least spans
+/// below it count as this one
+inline double round_step(double span, int most, double least = 1e-9) {
+    const double raw = std::max(span, least) / most;
     const double power = std::pow(10, std::floor(std::log10(raw)));
     constexpr double slack = 1 + 1e-9;
     for (const double factor : {1.0, 2.0, 5.0})

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "study/analysis/comparison.hpp"
 #include "study/plot/scatter_plot.hpp"
@@ -28,6 +29,9 @@ struct ScatterPanel {
     ErrorQuantity quantity = ErrorQuantity::horizontal;  ///< of the histogram
     std::optional<SampleStatistics> chosen;              ///< statistics of that quantity
 };
+
+/// The largest of `sizes` but the wildest one in 500; 0 of none.
+double all_but_wildest(std::vector<double> sizes);
 
 /// A number on an axis whose marks are `step` apart.
 std::string scatter_tick(double value, double step);
