@@ -11,52 +11,34 @@ namespace skyloop::inline motion {
 namespace {
 
 // What a command does to the way of the vehicle.
-enum class MissionMove { none, waypoint, circles, loiter_time, for_ever, home, land, take_off, delay, speed };
+enum class MissionMove { waypoint, circles, loiter_time, for_ever, home, land, take_off, delay, speed };
 
 struct MissionCommand {
     int number;
     MissionMove move;
 };
 
-// MAV_CMD of MAVLink's common.xml. Commands of cameras, gimbals, servos and the like move nothing.
-constexpr std::array mission_commands{
-    MissionCommand{16, MissionMove::waypoint},     // NAV_WAYPOINT
-    MissionCommand{17, MissionMove::for_ever},     // NAV_LOITER_UNLIM
-    MissionCommand{18, MissionMove::circles},      // NAV_LOITER_TURNS
-    MissionCommand{19, MissionMove::loiter_time},  // NAV_LOITER_TIME
-    MissionCommand{20, MissionMove::home},         // NAV_RETURN_TO_LAUNCH
-    MissionCommand{21, MissionMove::land},         // NAV_LAND
-    MissionCommand{22, MissionMove::take_off},     // NAV_TAKEOFF
-    MissionCommand{31, MissionMove::waypoint},     // NAV_LOITER_TO_ALT
-    MissionCommand{82, MissionMove::waypoint},     // NAV_SPLINE_WAYPOINT
-    MissionCommand{84, MissionMove::take_off},     // NAV_VTOL_TAKEOFF
-    MissionCommand{85, MissionMove::land},         // NAV_VTOL_LAND
-    MissionCommand{93, MissionMove::delay},        // NAV_DELAY
-    MissionCommand{112, MissionMove::none},        // CONDITION_DELAY, which delays only what moves nothing
-    MissionCommand{114, MissionMove::none},        // CONDITION_DISTANCE
-    MissionCommand{178, MissionMove::speed},       // DO_CHANGE_SPEED
-    MissionCommand{181, MissionMove::none},        // DO_SET_RELAY
-    MissionCommand{182, MissionMove::none},        // DO_REPEAT_RELAY
-    MissionCommand{183, MissionMove::none},        // DO_SET_SERVO
-    MissionCommand{184, MissionMove::none},        // DO_REPEAT_SERVO
-    MissionCommand{189, MissionMove::none},        // DO_LAND_START
-    MissionCommand{200, MissionMove::none},        // DO_CONTROL_VIDEO
-    MissionCommand{202, MissionMove::none},        // DO_DIGICAM_CONFIGURE
-    MissionCommand{203, MissionMove::none},        // DO_DIGICAM_CONTROL
-    MissionCommand{204, MissionMove::none},        // DO_MOUNT_CONFIGURE
-    MissionCommand{205, MissionMove::none},        // DO_MOUNT_CONTROL
-    MissionCommand{206, MissionMove::none},        // DO_SET_CAM_TRIGG_DIST
-    MissionCommand{211, MissionMove::none},        // DO_GRIPPER
-    MissionCommand{214, MissionMove::none},        // DO_SET_CAM_TRIGG_INTERVAL
-    MissionCommand{530, MissionMove::none},        // SET_CAMERA_MODE
-    MissionCommand{531, MissionMove::none},        // SET_CAMERA_ZOOM
-    MissionCommand{532, MissionMove::none},        // SET_CAMERA_FOCUS
-    MissionCommand{1000, MissionMove::none},       // DO_GIMBAL_MANAGER_PITCHYAW
-    MissionCommand{2000, MissionMove::none},       // IMAGE_START_CAPTURE
-    MissionCommand{2001, MissionMove::none},       // IMAGE_STOP_CAPTURE
-    MissionCommand{2500, MissionMove::none},       // VIDEO_START_CAPTURE
-    MissionCommand{2501, MissionMove::none},       // VIDEO_STOP_CAPTURE
-};
+// MAV_CMD of MAVLink's common.xml.
+constexpr auto mission_commands = std::to_array<MissionCommand>({
+    {16, MissionMove::waypoint},     // NAV_WAYPOINT
+    {17, MissionMove::for_ever},     // NAV_LOITER_UNLIM
+    {18, MissionMove::circles},      // NAV_LOITER_TURNS
+    {19, MissionMove::loiter_time},  // NAV_LOITER_TIME
+    {20, MissionMove::home},         // NAV_RETURN_TO_LAUNCH
+    {21, MissionMove::land},         // NAV_LAND
+    {22, MissionMove::take_off},     // NAV_TAKEOFF
+    {31, MissionMove::waypoint},     // NAV_LOITER_TO_ALT
+    {82, MissionMove::waypoint},     // NAV_SPLINE_WAYPOINT
+    {84, MissionMove::take_off},     // NAV_VTOL_TAKEOFF
+    {85, MissionMove::land},         // NAV_VTOL_LAND
+    {93, MissionMove::delay},        // NAV_DELAY
+    {178, MissionMove::speed},       // DO_CHANGE_SPEED
+});
+
+// Those that move nothing: 112 and 114 delay only what moves nothing, 181 to 184 are of relays and servos, 189 marks
+// where landing begins, 211 is of grippers, 1000 of gimbals, all others of cameras and their mounts.
+constexpr std::array commands_without_move{112, 114, 181, 182, 183, 184, 189,  200,  202,  203,  204, 205,
+                                           206, 211, 214, 530, 531, 532, 1000, 2000, 2001, 2500, 2501};
 
 // Heights of MAV_FRAME.
 enum class MissionHeight { sea_level, home, terrain, elsewhere };
@@ -289,10 +271,13 @@ Result<void> MissionTrack::move(MissionMove how, const MissionItem& item) {
 Result<void> MissionTrack::follow(const MissionItem& item) {
     item_ = item.number;
     if (for_ever_) return ++never_reached_, Result<void>();
+    if (std::find(commands_without_move.begin(), commands_without_move.end(), item.command) !=
+        commands_without_move.end())
+        return {};
     const auto* const known = std::find_if(mission_commands.begin(), mission_commands.end(),
                                            [&](const MissionCommand& c) { return c.number == item.command; });
     if (known == mission_commands.end()) return ++not_followed_[item.command], Result<void>();
-    return known->move == MissionMove::none ? Result<void>() : move(known->move, item);
+    return move(known->move, item);
 }
 
 void MissionTrack::add_notes() {

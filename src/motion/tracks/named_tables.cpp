@@ -29,6 +29,7 @@ public:
         return value && *value ? std::optional(**value * scale) : std::nullopt;
     }
     [[nodiscard]] std::string_view text(std::string_view name) const { return table_.cell(table_.column(name)); }
+    [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const { return table_.refusal(what); }
     [[nodiscard]] const std::optional<Error>& fault() const { return fault_; }
 
 private:
@@ -39,36 +40,40 @@ private:
 // A dialect: its rows one by one.
 using RowTaker = std::function<Result<void>(TextTrack&, TableCells&)>;
 
-// Latitude and longitude of columns with these names; false: left out, as one of them is empty.
-Result<bool> named_place(TextTrack& track, TableCells& table, std::array<std::string_view, 2> names, TextRow& row) {
-    const auto place = table.place(names);
-    if (!place) return fail(place.error());
-    if (*place)
+// What a dialect tells in a row beside the place; false: the row is left out.
+using NamedRowReader = std::function<Result<bool>(TextTrack&, NamedRow&, TextRow&)>;
+
+// Rows with latitude and longitude in columns of these names.
+RowTaker named_rows(const std::array<std::string_view, 2>& places, NamedRowReader read) {
+    return [places, read = std::move(read)](TextTrack& track, TableCells& table) -> Result<void> {
+        if (auto fits = table.check_width(); !fits) return fits;
+        NamedRow columns(table);
+        TextRow row;
+        row.line = table.line();
+        const auto taken = read(track, columns, row);
+        if (!taken) return fail(taken.error());
+        if (!*taken) return {};
+        const auto place = table.place(places);
+        if (!place) return fail(place.error());
+        if (!*place) return track.leave_out("have no place", row.line), Result<void>();
         row.latitude_deg = (**place)[0], row.longitude_deg = (**place)[1];
-    else
-        track.leave_out("have no place", row.line);
-    return place->has_value();
+        if (columns.fault()) return fail(*columns.fault());
+        return track.add(row);
+    };
 }
 
 // Garmin G1000 (the file's own lines of units): local time and its offset from UTC; AltGPS, feet above WGS 84; ground
 // track and heading from magnetic north, MagVar their variation, east positive; vertical speed in feet a minute.
-Result<void> take_g1000_row(TextTrack& track, TableCells& table) {
-    if (auto fits = table.check_width(); !fits) return fits;
-    NamedRow columns(table);
-    TextRow row;
-    row.line = table.line();
+Result<bool> read_g1000_row(TextTrack& track, NamedRow& columns, TextRow& row) {
     const std::string_view date = columns.text("Lcl Date"), clock = columns.text("Lcl Time");
-    if (date.empty() || clock.empty()) return track.leave_out("have no time", row.line), Result<void>();
+    if (date.empty() || clock.empty()) return track.leave_out("have no time", row.line), false;
     const auto time = parse_iso_time(fmt::format("{:.20} {:.20}{:.10}", date, clock, columns.text("UTCOfst")));
     if (!time || !time->in_range)
-        return table.refusal(
+        return columns.refusal(
             fmt::format("the time is '{:.20} {:.20} {:.10}'; expected one as 2014-03-29, 22:50:22, "
                         "+00:00",
                         date, clock, columns.text("UTCOfst")));
     row.time = time->time.time_since_epoch();
-    const auto placed = named_place(track, table, {"Latitude", "Longitude"}, row);
-    if (!placed) return fail(placed.error());
-    if (!*placed) return {};
     row.ellipsoidal_m = columns.number("AltGPS", named_foot);
     if (!row.ellipsoidal_m) row.sea_level_m = columns.number("AltMSL", named_foot);
     row.speed_mps = columns.number("GndSpd", named_knot);
@@ -79,31 +84,22 @@ Result<void> take_g1000_row(TextTrack& track, TableCells& table) {
     if (variation && heading && roll && pitch)
         row.attitude = Attitude::roll_pitch_yaw(Angle::degrees(*roll), Angle::degrees(*pitch),
                                                 Angle::degrees(*heading + *variation));
-    if (columns.fault()) return fail(*columns.fault());
-    return track.add(row);
+    return true;
 }
 
 // The table of Hazer's gpstool (com-diag-hazer, yodel): TIM, POSIX seconds of the fix; MSL and GEO, metres above sea
 // level and above the ellipsoid; SOG in knots, COG from true north.
-Result<void> take_yodel_row(TextTrack& track, TableCells& table) {
-    if (auto fits = table.check_width(); !fits) return fits;
-    NamedRow columns(table);
-    TextRow row;
-    row.line = table.line();
+Result<bool> read_yodel_row(TextTrack& track, NamedRow& columns, TextRow& row) {
     const auto fix = columns.number("FIX");
-    if (fix && *fix < 2) return track.leave_out("have a fix below 2", row.line), Result<void>();
+    if (fix && *fix < 2) return track.leave_out("have a fix below 2", row.line), false;
     const auto time = posix_since_1980(columns.text("TIM"));
-    if (!time) return table.refusal(fmt::format("TIM is '{:.40}'; expected POSIX seconds", columns.text("TIM")));
+    if (!time) return columns.refusal(fmt::format("TIM is '{:.40}'; expected POSIX seconds", columns.text("TIM")));
     row.time = *time;
-    const auto placed = named_place(track, table, {"LAT", "LON"}, row);
-    if (!placed) return fail(placed.error());
-    if (!*placed) return {};
     row.ellipsoidal_m = columns.number("GEO");
     if (!row.ellipsoidal_m) row.sea_level_m = columns.number("MSL");
     row.speed_mps = columns.number("SOG", named_knot);
     row.course_deg = columns.number("COG");
-    if (columns.fault()) return fail(*columns.fault());
-    return track.add(row);
+    return true;
 }
 
 // What columns of unicsv are called that may tell a unit: "Altitude", "Altitude (ft)" or "alt_ft".
@@ -142,28 +138,19 @@ UnicsvColumn unicsv_column(const std::vector<std::string>& names, const UnicsvQu
 
 // gpsbabel's unicsv: date and time in UTC in two columns, metres above sea level, m/s. Tables of others that have its
 // names may tell other units behind them.
-Result<void> take_unicsv_row(TextTrack& track, TableCells& table, const UnicsvColumns& told) {
-    if (auto fits = table.check_width(); !fits) return fits;
-    NamedRow columns(table);
-    TextRow row;
-    row.line = table.line();
+Result<bool> read_unicsv_row(const UnicsvColumns& told, TextTrack& track, NamedRow& columns, TextRow& row) {
     const std::string_view date = columns.text("Date"), clock = columns.text("Time");
-    if (date.empty() || clock.empty()) return track.leave_out("have no time", row.line), Result<void>();
+    if (date.empty() || clock.empty()) return track.leave_out("have no time", row.line), false;
     const auto time = parse_iso_time(fmt::format("{:.20} {:.20}", date, clock));
     if (!time)
-        return table.refusal(
+        return columns.refusal(
             fmt::format("the time is '{:.20} {:.20}'; expected one as 2024/03/05, 12:00:00.25", date, clock));
-    if (!time->in_range)
-        return track.leave_out("have a time before 1980-01-06 or after 2199", row.line), Result<void>();
+    if (!time->in_range) return track.leave_out("have a time before 1980-01-06 or after 2199", row.line), false;
     row.time = time->time.time_since_epoch();
-    const auto placed = named_place(track, table, {"Latitude", "Longitude"}, row);
-    if (!placed) return fail(placed.error());
-    if (!*placed) return {};
     row.sea_level_m = columns.number(told.altitude.name, told.altitude.scale);
     row.speed_mps = columns.number(told.speed.name, told.speed.scale);
     row.course_deg = columns.number(told.course.name, told.course.scale);
-    if (columns.fault()) return fail(*columns.fault());
-    return track.add(row);
+    return true;
 }
 
 // Names that gpsbabel writes and that say nothing of the way, and those that are read.
@@ -245,13 +232,13 @@ Result<Track> read_rows(const TrackFile& file, TextTrack& track, const RowTaker&
 
 Result<Track> read_g1000(const TrackFile& file) {
     TextTrack track(file, "Garmin G1000");
-    return read_rows(file, track, take_g1000_row, "Lcl Date,");
+    return read_rows(file, track, named_rows({"Latitude", "Longitude"}, read_g1000_row), "Lcl Date,");
 }
 
 Result<Track> read_yodel(const TrackFile& file) {
     TextTrack track(file, "Hazer");
     track.note("roll, pitch and yaw are not read: the rows do not say which of them are known");
-    return read_rows(file, track, take_yodel_row, "NAM,");
+    return read_rows(file, track, named_rows({"LAT", "LON"}, read_yodel_row), "NAM,");
 }
 
 Result<Track> read_euroc(const TrackFile& file) {
@@ -309,7 +296,9 @@ Result<Track> read_unicsv(const TrackFile& file) {
     if (columns.altitude.name.empty() && other != unused.end())
         return track.refusal(
             fmt::format("the column '{:.40}' is not known; expected Altitude, or Altitude (ft)", *other));
-    const auto take = [&](TextTrack& to, TableCells& table) { return take_unicsv_row(to, table, columns); };
+    const auto take = named_rows({"Latitude", "Longitude"}, [&](TextTrack& to, NamedRow& row_columns, TextRow& row) {
+        return read_unicsv_row(columns, to, row_columns, row);
+    });
     return read_rows(file, track, take, names, std::move(unused));
 }
 

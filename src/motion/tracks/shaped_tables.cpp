@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "detail/text_track.hpp"
@@ -45,6 +46,24 @@ Result<Nanoseconds> counted_seconds(const TableCells& table, double seconds) {
     return to_nanoseconds(Seconds(seconds));
 }
 
+using Numbers = std::vector<double>;
+using ShapedRow = std::function<Result<void>(const TableCells&, const Numbers&, TextRow&)>;
+
+// The track of all rows of the file, each of `count` numbers or more.
+Result<Track> track_of_rows(const TrackFile& file, TextTrack& track, std::size_t count, const ShapedRow& take,
+                            std::string_view expected) {
+    TableCells table(file, first_row_of(file).separator, shaped_comments);
+    while (table.next()) {
+        const auto numbers = table.numbers(0, count);
+        if (!numbers) return fail(numbers.error());
+        TextRow row;
+        row.line = table.line();
+        if (const auto taken = take(table, *numbers, row); !taken) return fail(taken.error());
+        if (const auto added = track.add(row); !added) return fail(added.error());
+    }
+    return track.finish(expected);
+}
+
 // gps-sdr-sim's user motion (its README): time from the start, then ECEF metres, or latitude, longitude and height
 // above the ellipsoid; told apart by the numbers, as no angle is beyond 360.
 Result<Track> read_sim_motion(const TrackFile& file) {
@@ -54,24 +73,19 @@ Result<Track> read_sim_motion(const TrackFile& file) {
         ecef |= std::abs(first.numbers[i]) > 360;
     TextTrack track(file, ecef ? "motion of gps-sdr-sim, ECEF" : "motion of gps-sdr-sim, geodetic");
     track.count_from_start();
-    TableCells table(file, first.separator, shaped_comments);
-    while (table.next()) {
-        const auto v = table.numbers(0, 4);
-        if (!v) return fail(v.error());
-        const auto time = counted_seconds(table, (*v)[0]);
+    const auto take = [&](const TableCells& table, const Numbers& v, TextRow& row) -> Result<void> {
+        const auto time = counted_seconds(table, v[0]);
         if (!time) return fail(time.error());
-        TextRow row;
         row.time = *time;
-        row.line = table.line();
         if (ecef) {
-            row.position = Position<Ecef>((*v)[1], (*v)[2], (*v)[3]);
+            row.position = Position<Ecef>(v[1], v[2], v[3]);
         } else {
-            row.latitude_deg = (*v)[1], row.longitude_deg = (*v)[2];
-            row.ellipsoidal_m = (*v)[3];
+            row.latitude_deg = v[1], row.longitude_deg = v[2];
+            row.ellipsoidal_m = v[3];
         }
-        if (const auto added = track.add(row); !added) return fail(added.error());
-    }
-    return track.finish("rows of a time and a place");
+        return {};
+    };
+    return track_of_rows(file, track, 4, take, "rows of a time and a place");
 }
 
 // TUM's format of trajectories (RGB-D benchmark, "file formats"): time, x, y, z, and a quaternion with w last, here of
@@ -86,24 +100,19 @@ Result<Track> read_tum(const TrackFile& file) {
     const FirstRow first = first_row_of(file);
     const bool posix = first.numbers[0] > static_cast<double>(gps_epoch_posix_s);
     if (!posix) track.count_from_start();
-    TableCells table(file, first.separator, shaped_comments);
-    while (table.next()) {
-        const auto v = table.numbers(0, 8);
-        if (!v) return fail(v.error());
-        const auto counted = counted_seconds(table, (*v)[0]);
+    track.note("local metres are taken as east, north, up; the body's axes as forward, left, up");
+    const auto take = [&](const TableCells& table, const Numbers& v, TextRow& row) -> Result<void> {
+        const auto counted = counted_seconds(table, v[0]);
         if (!counted) return fail(counted.error());
         const auto time = posix ? posix_since_1980(table.cell(0)) : std::optional(*counted);
         if (!time) return table.refusal(fmt::format("the time is '{:.40}'; expected POSIX seconds", table.cell(0)));
-        TextRow row;
         row.time = *time;
-        row.line = table.line();
-        row.position = frame.to_ecef(Position<Enu>((*v)[1], (*v)[2], (*v)[3]));
-        const Eigen::Quaterniond turn((*v)[7], (*v)[4], (*v)[5], (*v)[6]);  // w first
+        row.position = frame.to_ecef(Position<Enu>(v[1], v[2], v[3]));
+        const Eigen::Quaterniond turn(v[7], v[4], v[5], v[6]);  // w first
         if (std::abs(turn.norm() - 1) < 0.05) row.attitude = attitude_of_flu_in_enu(turn);
-        if (const auto added = track.add(row); !added) return fail(added.error());
-    }
-    track.note("local metres are taken as east, north, up; the body's axes as forward, left, up");
-    return track.finish("rows of a time, x, y, z and a quaternion");
+        return {};
+    };
+    return track_of_rows(file, track, 8, take, "rows of a time, x, y, z and a quaternion");
 }
 
 // KITTI's OXTS packets, one row each (devkit, readme of raw data): latitude, longitude, altitude, roll, pitch, yaw
@@ -112,24 +121,19 @@ Result<Track> read_tum(const TrackFile& file) {
 Result<Track> read_oxts(const TrackFile& file) {
     TextTrack track(file, "KITTI OXTS");
     track.count_from_start();
-    TableCells table(file, first_row_of(file).separator, shaped_comments);
-    std::int64_t index = 0;
-    while (table.next()) {
-        const auto v = table.numbers(0, 11);
-        if (!v) return fail(v.error());
-        TextRow row;
-        row.time = std::chrono::milliseconds(100) * index++;
-        row.line = table.line();
-        row.latitude_deg = (*v)[0], row.longitude_deg = (*v)[1];
-        row.sea_level_m = (*v)[2];
-        // Roll counts the left side up, pitch the front down.
-        row.attitude = Attitude::roll_pitch_yaw(Angle::radians((*v)[3]), Angle::radians(-(*v)[4]),
-                                                Angle::radians(std::numbers::pi / 2 - (*v)[5]));
-        row.velocity = Velocity<Enu>((*v)[7], (*v)[6], (*v)[10]);
-        if (const auto added = track.add(row); !added) return fail(added.error());
-    }
     track.note("the rows have no times and are taken at 10 Hz, as KITTI gives them");
-    return track.finish("rows of 30 numbers");
+    std::int64_t index = 0;
+    const auto take = [&](const TableCells&, const Numbers& v, TextRow& row) -> Result<void> {
+        row.time = std::chrono::milliseconds(100) * index++;
+        row.latitude_deg = v[0], row.longitude_deg = v[1];
+        row.sea_level_m = v[2];
+        // Roll counts the left side up, pitch the front down.
+        row.attitude = Attitude::roll_pitch_yaw(Angle::radians(v[3]), Angle::radians(-v[4]),
+                                                Angle::radians(std::numbers::pi / 2 - v[5]));
+        row.velocity = Velocity<Enu>(v[7], v[6], v[10]);
+        return {};
+    };
+    return track_of_rows(file, track, 11, take, "rows of 30 numbers");
 }
 
 // Inertial Explorer's table of UrbanNav (its README, "ground truth"): POSIX time, GPS week, time of week, latitude and
@@ -137,33 +141,26 @@ Result<Track> read_oxts(const TrackFile& file) {
 // its acceleration, roll, pitch, heading, quality.
 constexpr std::size_t explorer_columns = 20;
 
-double sexagesimal(const std::vector<double>& v, std::size_t at, std::string_view first) {
+double sexagesimal(const Numbers& v, std::size_t at, std::string_view first) {
     const double size = std::abs(v[at]) + v[at + 1] / 60 + v[at + 2] / 3600;
     return first.starts_with('-') ? -size : size;  // the sign of "-0 30 00" too
 }
 
 Result<Track> read_explorer(const TrackFile& file) {
     TextTrack track(file, "Inertial Explorer");
-    TableCells table(file, first_row_of(file).separator, shaped_comments);
-    while (table.next()) {
-        const auto v = table.numbers(0, explorer_columns);
-        if (!v) return fail(v.error());
-        const auto time = week_since_1980((*v)[1], (*v)[2]);
+    const auto take = [](const TableCells& table, const Numbers& v, TextRow& row) -> Result<void> {
+        const auto time = week_since_1980(v[1], v[2]);
         if (!time) return table.refusal("no GPS week and time of week in the second and third cell");
-        TextRow row;
         row.time = *time;
-        row.line = table.line();
-        row.latitude_deg = sexagesimal(*v, 3, table.cell(3));
-        row.longitude_deg = sexagesimal(*v, 6, table.cell(6));
-        row.ellipsoidal_m = (*v)[9];
-        const Attitude attitude =
-            Attitude::roll_pitch_yaw(Angle::degrees((*v)[16]), Angle::degrees((*v)[17]), Angle::degrees((*v)[18]));
-        row.attitude = attitude;
-        const Eigen::Vector3d ned = attitude.body_to_ned() * Eigen::Vector3d((*v)[11], (*v)[10], -(*v)[12]);
+        row.latitude_deg = sexagesimal(v, 3, table.cell(3));
+        row.longitude_deg = sexagesimal(v, 6, table.cell(6));
+        row.ellipsoidal_m = v[9];
+        row.attitude = Attitude::roll_pitch_yaw(Angle::degrees(v[16]), Angle::degrees(v[17]), Angle::degrees(v[18]));
+        const Eigen::Vector3d ned = row.attitude->body_to_ned() * Eigen::Vector3d(v[11], v[10], -v[12]);
         row.velocity = Velocity<Enu>(ned.y(), ned.x(), -ned.z());
-        if (const auto added = track.add(row); !added) return fail(added.error());
-    }
-    return track.finish("rows of 20 numbers");
+        return {};
+    };
+    return track_of_rows(file, track, explorer_columns, take, "rows of 20 numbers");
 }
 
 struct ShapedDialect {
