@@ -13,12 +13,15 @@ constexpr std::size_t most_windows = 200;  // pairs grow with the square
 struct QuantityName {
     ErrorQuantity quantity;
     std::string_view name;
+    std::vector<double> PositionErrors::*values;
 };
-constexpr std::array<QuantityName, error_quantities.size()> quantity_names{{{ErrorQuantity::east, "east"},
-                                                                            {ErrorQuantity::north, "north"},
-                                                                            {ErrorQuantity::up, "up"},
-                                                                            {ErrorQuantity::horizontal, "horizontal"},
-                                                                            {ErrorQuantity::spatial, "3d"}}};
+constexpr std::array<QuantityName, error_quantities.size()> quantity_names{{
+    {ErrorQuantity::east, "east", &PositionErrors::east},
+    {ErrorQuantity::north, "north", &PositionErrors::north},
+    {ErrorQuantity::up, "up", &PositionErrors::up},
+    {ErrorQuantity::horizontal, "horizontal", &PositionErrors::horizontal},
+    {ErrorQuantity::spatial, "3d", &PositionErrors::spatial},
+}};
 
 bool is_radial(ErrorQuantity quantity) {
     return quantity == ErrorQuantity::horizontal || quantity == ErrorQuantity::spatial;
@@ -132,19 +135,7 @@ std::optional<ErrorQuantity> error_quantity_from_name(std::string_view name) {
 }
 
 const std::vector<double>& error_values(const PositionErrors& errors, ErrorQuantity quantity) {
-    switch (quantity) {
-        case ErrorQuantity::east:
-            return errors.east;
-        case ErrorQuantity::north:
-            return errors.north;
-        case ErrorQuantity::up:
-            return errors.up;
-        case ErrorQuantity::horizontal:
-            return errors.horizontal;
-        case ErrorQuantity::spatial:
-            return errors.spatial;
-    }
-    return errors.horizontal;
+    return errors.*quantity_names[static_cast<std::size_t>(quantity)].values;
 }
 
 namespace {

@@ -1,3 +1,4 @@
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "base/time/utc_time.hpp"
@@ -16,15 +17,8 @@ Json json_or_null(const std::optional<Value>& value) {
 Json seconds_json(const std::optional<Seconds>& seconds) { return seconds ? Json(seconds->value()) : Json(nullptr); }
 
 std::string_view reference_word(ReferenceKind kind) {
-    switch (kind) {
-        case ReferenceKind::truth:
-            return "truth";
-        case ReferenceKind::given_point:
-            return "given point";
-        case ReferenceKind::own_mean:
-            return "own mean";
-    }
-    return "own mean";
+    constexpr std::array<std::string_view, 3> words{"truth", "given point", "own mean"};
+    return words[static_cast<std::size_t>(kind)];
 }
 
 Json figures_json(const SampleStatistics& s) {
