@@ -176,10 +176,6 @@ namespace {
 
 constexpr std::string_view log_end = ".log.csv";
 
-tl::unexpected<Error> table_failure(const std::filesystem::path& path, std::string_view what) {
-    return fail(ErrorCode::outside, fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
-}
-
 // Held while a row is written.
 class FileLock {
 public:
@@ -265,27 +261,19 @@ Result<void> show_rows(const std::filesystem::path& file, std::string_view text,
 
 Result<TableFile> TableFile::open(const std::filesystem::path& path, std::string_view header) {
     if (const auto made = make_folder(path.parent_path()); !made) return fail(made.error());
-    const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (descriptor < 0) return table_failure(path, "cannot be opened");
-    TableFile file(path, descriptor);
+    TableFile file(path, FileDescriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666)));
+    if (!file.file_.open()) return file.failure("cannot be opened");
     if (const auto begun = file.begin(header); !begun) return fail(begun.error());
     return file;
 }
 
 Result<void> TableFile::begin(std::string_view header) {
-    const FileLock lock(descriptor_);
-    struct stat found {};
-    if (::fstat(descriptor_, &found) != 0) return table_failure(path_, "cannot be read");
-    const off_t end = end_of_lines(descriptor_, found.st_size);
-    if (end != found.st_size && ::ftruncate(descriptor_, end) != 0) return table_failure(path_, "cannot be cut");
-    if (end == 0) {
-        if (write_whole(descriptor_, header)) return {};
-        const auto failure = table_failure(path_, "cannot be written");
-        if (::ftruncate(descriptor_, 0) != 0) return failure;
-        return failure;
-    }
+    const FileLock lock(file_.value());
+    const auto end = cut_to_whole_lines();
+    if (!end) return fail(end.error());
+    if (*end == 0) return write_or_take_back(header, 0);
     std::string first(header.size(), '\0');
-    const ssize_t count = ::pread(descriptor_, first.data(), first.size(), 0);
+    const ssize_t count = ::pread(file_.value(), first.data(), first.size(), 0);
     if (count == static_cast<ssize_t>(header.size()) && first == header) return {};
     return fail(ErrorCode::input,
                 fmt::format("{}:1: has other columns than this campaign; expected a folder of its own, or the same "
@@ -293,30 +281,33 @@ Result<void> TableFile::begin(std::string_view header) {
                             path_.string()));
 }
 
-TableFile::TableFile(TableFile&& other) noexcept
-    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-TableFile& TableFile::operator=(TableFile&& other) noexcept {
-    std::swap(path_, other.path_);
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-}
-
-TableFile::~TableFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-}
-
 Result<void> TableFile::append(std::string_view row) {
-    const FileLock lock(descriptor_);
-    struct stat found {};
-    if (::fstat(descriptor_, &found) != 0) return table_failure(path_, "cannot be read");
+    const FileLock lock(file_.value());
     // Another process that adds to the file may have been killed amid a row.
-    const off_t end = end_of_lines(descriptor_, found.st_size);
-    if (end != found.st_size && ::ftruncate(descriptor_, end) != 0) return table_failure(path_, "cannot be cut");
-    if (write_whole(descriptor_, row)) return {};
-    const auto failure = table_failure(path_, "cannot be written");
-    if (::ftruncate(descriptor_, end) != 0) return failure;
-    return failure;
+    const auto end = cut_to_whole_lines();
+    if (!end) return fail(end.error());
+    return write_or_take_back(row, *end);
+}
+
+// The end of the last whole line, which is the end of the file then.
+Result<std::int64_t> TableFile::cut_to_whole_lines() {
+    struct stat found {};
+    if (::fstat(file_.value(), &found) != 0) return failure("cannot be read");
+    const off_t end = end_of_lines(file_.value(), found.st_size);
+    if (end != found.st_size && ::ftruncate(file_.value(), end) != 0) return failure("cannot be cut");
+    return end;
+}
+
+// @param end of the file before
+Result<void> TableFile::write_or_take_back(std::string_view text, std::int64_t end) {
+    if (write_whole(file_.value(), text)) return {};
+    const auto why = failure("cannot be written");
+    if (::ftruncate(file_.value(), end) != 0) return why;
+    return why;
+}
+
+tl::unexpected<Error> TableFile::failure(std::string_view what) const {
+    return fail(ErrorCode::outside, fmt::format("{}: {}: {}", path_.string(), what, std::strerror(errno)));
 }
 
 std::filesystem::path shard_results(const std::filesystem::path& folder, const Shard& shard) {

@@ -12,6 +12,7 @@
 
 #include "base/core/result.hpp"
 #include "campaigns/campaign/campaign_plan.hpp"
+#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop::inline campaigns {
 
@@ -60,20 +61,20 @@ public:
     /// @param header its first line, with its end. Fails with `outside`, or with `input` where the file begins with
     /// another.
     static Result<TableFile> open(const std::filesystem::path& path, std::string_view header);
-    TableFile(TableFile&& other) noexcept;
-    TableFile& operator=(TableFile&& other) noexcept;
-    ~TableFile();
 
     /// Adds a row with its line end. What a full disk took of it is taken back, and the call fails with `outside`.
     Result<void> append(std::string_view row);
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
 private:
-    TableFile(std::filesystem::path path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+    TableFile(std::filesystem::path path, FileDescriptor file) : path_(std::move(path)), file_(std::move(file)) {}
     Result<void> begin(std::string_view header);
+    Result<std::int64_t> cut_to_whole_lines();
+    Result<void> write_or_take_back(std::string_view text, std::int64_t end);
+    [[nodiscard]] tl::unexpected<Error> failure(std::string_view what) const;
 
     std::filesystem::path path_;
-    int descriptor_ = -1;
+    FileDescriptor file_;
 };
 
 std::filesystem::path shard_results(const std::filesystem::path& folder, const Shard& shard);  ///< I-of-N.csv

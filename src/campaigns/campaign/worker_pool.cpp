@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
+#include "wire/transport/file_descriptor.hpp"
 
 namespace skyloop::inline campaigns {
 
@@ -45,7 +46,7 @@ public:
     [[nodiscard]] bool listen();
     /// The next whole line, without its end.
     [[nodiscard]] std::optional<std::string> take_line();
-    [[nodiscard]] int descriptor() const { return from_; }
+    [[nodiscard]] int descriptor() const { return from_.value(); }
     void ask_to_end() const;
     /// Kills it where it still lives. @return "signal 9", "exit code 1"
     std::string finish();
@@ -58,10 +59,9 @@ public:
 
 private:
     WorkerProcess() = default;
-    void close_pipes();
 
     pid_t process_ = -1;
-    int to_ = -1, from_ = -1;
+    FileDescriptor to_, from_;
     std::string heard_;
     int status_ = 0;
 };
@@ -99,21 +99,20 @@ int spawn_worker(pid_t& process, const std::vector<std::string>& command, int in
 }  // namespace
 
 Result<WorkerProcess> WorkerProcess::start(const std::vector<std::string>& command) {
-    std::array<int, 2> in{-1, -1}, out{-1, -1};
-    // To a socket one may write without SIGPIPE when nobody listens any more.
-    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, in.data()) != 0 || ::pipe2(out.data(), O_CLOEXEC) != 0) {
-        const int why = errno;
-        for (const int end : {in[0], in[1]})
-            if (end >= 0) ::close(end);
-        return fail(ErrorCode::outside, fmt::format("a worker cannot be started: {}", std::strerror(why)));
-    }
+    const auto refused = [] {
+        return fail(ErrorCode::outside, fmt::format("a worker cannot be started: {}", std::strerror(errno)));
+    };
+    std::array<int, 2> ends{-1, -1};
     WorkerProcess worker;
-    worker.to_ = in[1];
-    worker.from_ = out[0];
-    const int failed = spawn_worker(worker.process_, command, in[0], out[1]);
-    ::close(in[0]);
-    ::close(out[1]);
-    ::fcntl(worker.from_, F_SETFL, O_NONBLOCK);
+    // To a socket one may write without SIGPIPE when nobody listens any more.
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return refused();
+    const FileDescriptor input(ends[0]);
+    worker.to_ = FileDescriptor(ends[1]);
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return refused();
+    worker.from_ = FileDescriptor(ends[0]);
+    const FileDescriptor output(ends[1]);
+    const int failed = spawn_worker(worker.process_, command, input.value(), output.value());
+    ::fcntl(worker.from_.value(), F_SETFL, O_NONBLOCK);
     if (failed == 0) return worker;
     worker.process_ = -1;
     return fail(ErrorCode::outside,
@@ -136,18 +135,11 @@ WorkerProcess& WorkerProcess::operator=(WorkerProcess&& other) noexcept {
 
 WorkerProcess::~WorkerProcess() { finish(); }
 
-void WorkerProcess::close_pipes() {
-    for (int* end : {&to_, &from_}) {
-        if (*end >= 0) ::close(*end);
-        *end = -1;
-    }
-}
-
 bool WorkerProcess::tell(std::string_view line) const {
     std::string text(line);
     text += '\n';
     for (std::string_view rest = text; !rest.empty();) {
-        const ssize_t count = ::send(to_, rest.data(), rest.size(), MSG_NOSIGNAL);
+        const ssize_t count = ::send(to_.value(), rest.data(), rest.size(), MSG_NOSIGNAL);
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) return false;
         rest.remove_prefix(static_cast<std::size_t>(count));
@@ -158,7 +150,7 @@ bool WorkerProcess::tell(std::string_view line) const {
 bool WorkerProcess::listen() {
     std::array<char, 65536> piece{};
     for (;;) {
-        const ssize_t count = ::read(from_, piece.data(), piece.size());
+        const ssize_t count = ::read(from_.value(), piece.data(), piece.size());
         if (count > 0) heard_.append(piece.data(), static_cast<std::size_t>(count));
         if (count == 0) return false;
         if (count < 0 && errno != EINTR) return errno == EAGAIN;
@@ -185,7 +177,8 @@ bool WorkerProcess::has_ended() {
 }
 
 std::string WorkerProcess::finish() {
-    close_pipes();
+    to_ = FileDescriptor();
+    from_ = FileDescriptor();
     if (process_ > 0) {
         // One that ends by itself has closed its output a moment before.
         for (int i = 0; i < 20 && !has_ended(); ++i)
