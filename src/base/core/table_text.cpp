@@ -27,6 +27,8 @@ std::size_t end_of_cell(std::string_view line, std::string_view separators) {
 
 std::string_view trimmed_cell(std::string_view text) { return trimmed(text, " \t\r\n\""); }
 
+bool is_absent(std::string_view cell) { return cell.empty() || cell == "nan" || cell == "NaN" || cell == "NAN"; }
+
 char separator_in(std::string_view line) {
     for (const char candidate : {',', ';', '\t'})
         if (line.find(candidate) != std::string_view::npos) return candidate;

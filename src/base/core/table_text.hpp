@@ -15,6 +15,9 @@ using LineCells = std::vector<std::string_view>;
 /// Without blanks, line ends and quotation marks around it.
 std::string_view trimmed_cell(std::string_view text);
 
+/// Whether a cell holds nothing: it is empty, or "nan" as programs write what they do not know.
+bool is_absent(std::string_view cell);
+
 /// Comma, semicolon or tabulator, the first of them that the line has; else a blank.
 char separator_in(std::string_view line);
 

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "base/core/files.hpp"
+#include "base/core/number_text.hpp"
 
 namespace skyloop::inline campaigns {
 namespace {
@@ -33,12 +33,6 @@ std::string joined_row(const std::vector<std::string>& cells) {
     return row + "\n";
 }
 
-template <class Number>
-bool parse_cell(std::string_view cell, Number& number) {
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-    return error == std::errc() && end == cell.data() + cell.size();
-}
-
 bool is_key(std::string_view text) {
     return text.size() == key_digits && std::all_of(text.begin(), text.end(), [](char c) {
                return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
@@ -52,8 +46,11 @@ tl::unexpected<Error> bad_cell(std::string_view column, std::string_view found, 
 Result<void> parse_fixed_cells(const std::vector<std::string>& cells, RunResult& result) {
     result.key = cells[0];
     if (!is_key(result.key)) return bad_cell("key", cells[0], "32 hexadecimal digits");
-    if (!parse_cell(cells[1], result.number)) return bad_cell("number", cells[1], "a whole number");
-    if (!parse_cell(cells[2], result.seed)) return bad_cell("seed", cells[2], "a whole number");
+    const auto number = number_in<std::uint64_t>(cells[1]), seed = number_in<std::uint64_t>(cells[2]);
+    if (!number) return bad_cell("number", cells[1], "a whole number");
+    if (!seed) return bad_cell("seed", cells[2], "a whole number");
+    result.number = *number;
+    result.seed = *seed;
     result.status = cells[3];
     if (result.status != "passed" && result.status != "failed" && result.status != "error")
         return bad_cell("status", cells[3], "passed, failed or error");
@@ -162,10 +159,9 @@ Result<RunResult> parse_result_row(std::string_view line, const ResultColumns& c
     for (std::size_t i = 0; i < p; ++i)
         result.parameters.push_back(*at++);
     for (std::size_t i = 0; i < m; ++i, ++at) {
-        double value = 0;
-        if (!at->empty() && (!parse_cell(*at, value) || !std::isfinite(value)))
-            return bad_cell(columns.metrics[i], *at, "a number or nothing");
-        result.metrics.push_back(at->empty() ? std::nullopt : std::optional(value));
+        const auto value = number_in<double>(*at);
+        if (!value && !at->empty()) return bad_cell(columns.metrics[i], *at, "a number or nothing");
+        result.metrics.push_back(value);
     }
     for (std::size_t i = 0; i < v; ++i, ++at)
         result.verdicts.push_back({*at, *(at + static_cast<std::ptrdiff_t>(v))});

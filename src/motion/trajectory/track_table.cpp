@@ -267,8 +267,6 @@ Result<GpsTime> time_of_utc_cell(std::string_view text) {
     return to_gps_time(utc_of_local(*local, zone.value_or(0)), LeapSeconds::announced());
 }
 
-bool is_absent(std::string_view text) { return text.empty() || text == "nan" || text == "NaN" || text == "NAN"; }
-
 std::optional<std::string> mistake_of_place(const Position<Ecef>& place) {
     const double radius = place.vector().norm();
     if (radius > 6.3e6 && radius < 1.7e7) return std::nullopt;

@@ -87,13 +87,11 @@ struct TableCounts {
     std::size_t partial = 0, zero = 0;
 };
 
-bool tells_nothing(std::string_view cell) { return cell.empty() || cell == "nan" || cell == "NaN" || cell == "NAN"; }
-
 // Whether a row without a fix type is a fix: it has a whole place, which is not where what is not known is put.
 bool row_has_place(const TableRow& row, const FixColumns& columns, TableCounts& counts) {
     std::size_t empty = 0;
     for (const FixColumn& column : {columns.latitude, columns.longitude, columns.height})
-        if (tells_nothing(row.cells[column.index])) ++empty;
+        if (is_absent(row.cells[column.index])) ++empty;
     constexpr std::size_t whole = 3;
     if (empty > 0 && empty < whole) ++counts.partial;
     if (empty > 0) return false;

@@ -109,9 +109,6 @@ std::string_view first_row_line(std::string_view text);
 // A UTC time as ISO 8601 writes it; a zone may stand behind it (+01:00, +0100, +01).
 Result<GpsTime> time_of_utc_cell(std::string_view text);
 
-// A cell that holds nothing.
-bool is_absent(std::string_view text);
-
 // What is wrong with a place that is not near the ground; nothing: it is.
 std::optional<std::string> mistake_of_place(const Position<Ecef>& place);
 
