@@ -377,19 +377,18 @@ std::string ExpectationTracker::moment(GpsTime now, const Stretch& stretch) cons
 }
 
 std::string ExpectationTracker::last_seen() const {
-    if (last_number_) return fmt::format(" (seen: {:.2f}{})", *last_number_, unit_of(sentence_.subject.subject));
+    if (last_number_) return fmt::format(" (seen: {:.2f}{})", *last_number_, words_of(sentence_.subject.subject).unit);
     if (!last_word_.empty()) return fmt::format(" (seen: {})", last_word_);
     return is_of_epochs(sentence_.subject.subject) ? "" : " (seen: nothing)";
 }
 
 std::string ExpectationTracker::seen_all_along() const {
-    const std::string_view unit = unit_of(sentence_.subject.subject);
     std::string seen;
     if (right_numbers_) {
         const auto [least, greatest] = *right_numbers_;
         const std::string low = fmt::format("{:.2f}", least), high = fmt::format("{:.2f}", greatest);
         seen = low == high ? low : low + " to " + high;
-        seen += unit;
+        seen += words_of(sentence_.subject.subject).unit;
     }
     if (!right_word_.empty()) seen += (seen.empty() ? "" : ", ") + right_word_;
     if (!seen.empty()) return fmt::format(" (seen: {})", seen);

@@ -10,7 +10,7 @@
 #include "base/core/process.hpp"
 #include "base/core/words.hpp"
 #include "detail/probe_run.hpp"
-#include "detail/sentence_words.hpp"
+#include "detail/subject_view.hpp"
 #include "run/verdict/expectation.hpp"
 
 namespace skyloop::inline run {
@@ -90,25 +90,6 @@ const JsonValue* value_at(const JsonValue& object, const std::vector<std::string
         value = &*found;
     }
     return value;
-}
-
-template <class Value>
-bool compares(const Value& found, Relation comparison, const Value& wanted) {
-    switch (comparison) {
-        case Relation::below:
-            return found < wanted;
-        case Relation::above:
-            return found > wanted;
-        case Relation::at_least:
-            return found >= wanted;
-        case Relation::at_most:
-            return found <= wanted;
-        case Relation::equal:
-            return found == wanted;
-        case Relation::not_equal:
-            return found != wanted;
-    }
-    return false;
 }
 
 // Values of different kinds are unequal, and nothing else.

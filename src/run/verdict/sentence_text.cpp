@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "base/core/words.hpp"
 #include "detail/sentence_words.hpp"
@@ -18,23 +19,9 @@ std::string quoted_where_needed(const std::string& name) {
     return quote + name + quote;
 }
 
-std::string_view comparison_words(Relation comparison) {
-    switch (comparison) {
-        case Relation::below:
-            return "below";
-        case Relation::above:
-            return "above";
-        case Relation::at_least:
-            return "at least";
-        case Relation::at_most:
-            return "at most";
-        case Relation::equal:
-            return "equal to";
-        case Relation::not_equal:
-            return "other than";
-    }
-    return "";
-}
+// In the order of Relation.
+constexpr std::array<std::string_view, 6> comparison_words{"below",   "above",    "at least",
+                                                           "at most", "equal to", "other than"};
 
 std::string fix_words(FixType type) {
     switch (type) {
@@ -51,33 +38,13 @@ std::string fix_words(FixType type) {
     }
 }
 
-std::string quantity_name(const SubjectClause& subject) {
-    switch (subject.subject) {
-        case ExpectedSubject::horizontal_error:
-            return "horizontal error";
-        case ExpectedSubject::vertical_error:
-            return "vertical error";
-        case ExpectedSubject::speed_error:
-            return "speed error";
-        case ExpectedSubject::horizontal_accuracy:
-            return "h_acc";
-        case ExpectedSubject::vertical_accuracy:
-            return "v_acc";
-        case ExpectedSubject::satellites:
-            return "satellites";
-        default:
-            return subject.satellite ? "C/N0 of " + to_string(*subject.satellite) : "C/N0";
-    }
-}
-
 std::string quantity_words(const SubjectClause& subject) {
-    const std::string_view unit = subject.subject == ExpectedSubject::satellites ? "" : unit_of(subject.subject);
-    return fmt::format("{} {} {}{}", quantity_name(subject), comparison_words(subject.comparison), subject.limit, unit);
-}
-
-std::string sender_words(const SubjectClause& subject, std::string_view sender) {
-    const std::string every = subject.every ? fmt::format(" every {} s", subject.every->value()) : "";
-    return fmt::format("{} sends {}{}", sender, quoted_where_needed(subject.message), every);
+    const auto& [words, unit] = words_of(subject.subject);
+    const std::string of = subject.satellite ? " of " + to_string(*subject.satellite) : "";
+    // Their number is their own unit.
+    const bool is_named = subject.subject == ExpectedSubject::satellites;
+    return fmt::format("{}{} {} {}{}", words, of, comparison_words[static_cast<std::size_t>(subject.comparison)],
+                       subject.limit, is_named ? "" : unit);
 }
 
 std::string event_words(const EventReference& event) {
@@ -121,42 +88,20 @@ std::string rule_words(const TimeClause& time) {
 }  // namespace
 
 std::string subject_text(const SubjectClause& subject) {
-    const std::string silence = fmt::format("silent for {} s", subject.silence.value());
-    switch (subject.subject) {
-        case ExpectedSubject::fix:
-            return "fix";
-        case ExpectedSubject::no_fix:
-            return "no fix";
-        case ExpectedSubject::fix_type:
-            return fix_words(subject.fix_type);
-        case ExpectedSubject::jamming_flagged:
-            return "jamming flagged";
-        case ExpectedSubject::spoofing_flagged:
-            return "spoofing flagged";
-        case ExpectedSubject::client_sends:
-            return sender_words(subject, "client");
-        case ExpectedSubject::client_reconfigures:
-            return "client reconfigures";
-        case ExpectedSubject::client_silent:
-            return "client " + silence;
-        case ExpectedSubject::client_trusts:
-            return "client trusts";
-        case ExpectedSubject::client_distrusts:
-            return "client distrusts";
-        case ExpectedSubject::receiver_sends:
-            return sender_words(subject, "receiver");
-        case ExpectedSubject::receiver_silent:
-            return "receiver " + silence;
-        default:
-            return quantity_words(subject);
-    }
+    const std::string_view words = words_of(subject.subject).words;
+    if (subject.subject == ExpectedSubject::fix_type) return fix_words(subject.fix_type);
+    if (is_quantity(subject.subject)) return quantity_words(subject);
+    if (is_silence(subject.subject)) return fmt::format("{} for {} s", words, subject.silence.value());
+    const bool sends =
+        subject.subject == ExpectedSubject::client_sends || subject.subject == ExpectedSubject::receiver_sends;
+    if (!sends) return std::string(words);
+    const std::string every = subject.every ? fmt::format(" every {} s", subject.every->value()) : "";
+    return fmt::format("{} {}{}", words, quoted_where_needed(subject.message), every);
 }
 
 std::string expectation_text(const ExpectedSentence& sentence) {
     std::string subject = subject_text(sentence.subject);
-    const bool silent = sentence.subject.subject == ExpectedSubject::client_silent ||
-                        sentence.subject.subject == ExpectedSubject::receiver_silent;
-    if (silent && means_a_stretch(sentence.time)) subject.resize(subject.find(" for "));
+    if (is_silence(sentence.subject.subject) && means_a_stretch(sentence.time)) subject.resize(subject.find(" for "));
     if (sentence.time.never) subject += " never";
     const std::string rule = rule_words(sentence.time);
     return rule.empty() ? subject : subject + " " + rule;

@@ -8,24 +8,6 @@
 namespace skyloop::inline run {
 namespace {
 
-bool compared(double number, const SubjectClause& subject) {
-    switch (subject.comparison) {
-        case Relation::below:
-            return number < subject.limit;
-        case Relation::above:
-            return number > subject.limit;
-        case Relation::at_least:
-            return number >= subject.limit;
-        case Relation::at_most:
-            return number <= subject.limit;
-        case Relation::equal:
-            return number == subject.limit;
-        case Relation::not_equal:
-            return number != subject.limit;
-    }
-    return false;
-}
-
 bool reports_fix(const firmware::NavigationState& state) { return state.fix_ok && state.epoch.fix.has_position(); }
 
 std::string_view fix_word(const firmware::NavigationState& state) {
@@ -93,7 +75,7 @@ std::optional<double> quantity_of(const SubjectClause& subject, const EpochSeen&
 Reading read_quantity(const SubjectClause& subject, const EpochSeen& seen) {
     const std::optional<double> number = quantity_of(subject, seen);
     if (!number) return {false, std::nullopt, subject.subject == ExpectedSubject::cn0 ? "nothing tracked" : "no fix"};
-    return {compared(*number, subject), number};
+    return {compares(*number, subject.comparison, subject.limit), number};
 }
 
 // A UBX frame is its payload and eight bytes. A poll has no payload, or names no more than what it asks for.
@@ -115,6 +97,10 @@ bool is_of_messages(ExpectedSubject subject) { return !is_of_epochs(subject) && 
 
 bool is_silence(ExpectedSubject subject) {
     return subject == ExpectedSubject::client_silent || subject == ExpectedSubject::receiver_silent;
+}
+
+bool is_quantity(ExpectedSubject subject) {
+    return subject >= ExpectedSubject::horizontal_error && subject <= ExpectedSubject::cn0;
 }
 
 Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen) {
@@ -172,24 +158,7 @@ bool speaks_of(const SubjectClause& subject, const MessageSeen& seen) {
     }
 }
 
-std::string_view unit_of(ExpectedSubject subject) {
-    switch (subject) {
-        case ExpectedSubject::satellites:
-            return " satellites";
-        case ExpectedSubject::cn0:
-            return " dBHz";
-        case ExpectedSubject::speed_error:
-            return " m/s";
-        default:
-            return " m";
-    }
-}
-
 namespace {
-
-bool is_quantity(ExpectedSubject subject) {
-    return subject >= ExpectedSubject::horizontal_error && subject <= ExpectedSubject::cn0;
-}
 
 bool is_of_receiver(ExpectedSubject subject) {
     return subject == ExpectedSubject::receiver_sends || subject == ExpectedSubject::receiver_silent;

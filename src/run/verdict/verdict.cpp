@@ -1,21 +1,13 @@
 #include "run/verdict/verdict.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace skyloop::inline run {
 
 std::string_view outcome_name(Outcome outcome) {
-    switch (outcome) {
-        case Outcome::passed:
-            return "passed";
-        case Outcome::failed:
-            return "failed";
-        case Outcome::undecided:
-            return "undecided";
-        case Outcome::not_run:
-            return "not run";
-    }
-    return "";
+    constexpr std::array<std::string_view, 4> names{"passed", "failed", "undecided", "not run"};
+    return names[static_cast<std::size_t>(outcome)];
 }
 
 std::optional<bool> all_met(std::span<const Verdict> verdicts) {

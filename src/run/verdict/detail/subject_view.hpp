@@ -2,6 +2,7 @@
 /// What a run must show before an absence in it is evidence.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,8 @@ bool is_belief(ExpectedSubject subject);
 /// Whether it is read from messages: neither of the two.
 bool is_of_messages(ExpectedSubject subject);
 bool is_silence(ExpectedSubject subject);
+/// Whether it is a number that is compared.
+bool is_quantity(ExpectedSubject subject);
 
 /// The subject at an epoch; it must be one of epochs.
 Reading read_epoch(const SubjectClause& subject, const EpochSeen& seen);
@@ -36,8 +39,54 @@ bool speaks_of(const SubjectClause& subject, const MessageSeen& seen);
 /// Whether a client's message changes the receiver's settings: UBX-CFG but for polls and CFG-VALGET, PUBX,40 and
 /// PUBX,41, the setting packets of PMTK (2xx, 3xx) and PAIR (050, 062, 066, 864) (RECEIVER.md section 5).
 bool is_reconfiguration(const MessageSeen& seen);
-/// "m", "dBHz", … of the subject's number.
-std::string_view unit_of(ExpectedSubject subject);
+
+/// A subject in the words of the grammar, without what belongs to it.
+struct SubjectWords {
+    std::string_view words{};
+    std::string_view unit{};  ///< " m", " dBHz" … behind its number
+};
+/// In the order of ExpectedSubject.
+inline constexpr std::array<SubjectWords, 19> subject_words{{{"fix"},
+                                                             {"no fix"},
+                                                             {"fix"},
+                                                             {"horizontal error", " m"},
+                                                             {"vertical error", " m"},
+                                                             {"speed error", " m/s"},
+                                                             {"h_acc", " m"},
+                                                             {"v_acc", " m"},
+                                                             {"satellites", " satellites"},
+                                                             {"C/N0", " dBHz"},
+                                                             {"jamming flagged"},
+                                                             {"spoofing flagged"},
+                                                             {"client sends"},
+                                                             {"client reconfigures"},
+                                                             {"client silent"},
+                                                             {"client trusts"},
+                                                             {"client distrusts"},
+                                                             {"receiver sends"},
+                                                             {"receiver silent"}}};
+inline const SubjectWords& words_of(ExpectedSubject subject) {
+    return subject_words[static_cast<std::size_t>(subject)];
+}
+
+template <class Value>
+bool compares(const Value& found, Relation comparison, const Value& wanted) {
+    switch (comparison) {
+        case Relation::below:
+            return found < wanted;
+        case Relation::above:
+            return found > wanted;
+        case Relation::at_least:
+            return found >= wanted;
+        case Relation::at_most:
+            return found <= wanted;
+        case Relation::equal:
+            return found == wanted;
+        case Relation::not_equal:
+            return found != wanted;
+    }
+    return false;
+}
 
 /// Distrust, silence, "no fix" and "never" are also true of a client or receiver that is not there. They count only in
 /// a run in which the client once trusted, or the sender once sent, or the receiver once reported.
