@@ -60,8 +60,13 @@ void shift_place(Fix& fix, const Offset& by) {
     if (fix.has_position()) fix.position = displaced(fix.position, by.east, by.north, by.up);
 }
 
+void add_velocity(Fix& fix, const Offset& more) {
+    const VelocityNed& v = fix.velocity;
+    put_velocity(fix, {v.north + more.north, v.east + more.east, v.down - more.up});
+}
+
 Result<Fault> make_position_step(const Parameters& parameters, const FaultContext&) {
-    return fault_of_epoch([offset = read_offset(parameters)](Epoch& epoch, const FaultMoment& moment) {
+    return fault_of<&Fault::epoch>([offset = read_offset(parameters)](Epoch& epoch, const FaultMoment& moment) {
         shift_place(epoch.fix, offset * moment.strength);
     });
 }
@@ -70,7 +75,7 @@ Result<Fault> make_position_ramp(const Parameters& parameters, const FaultContex
     const Offset rate = read_vector(parameters, "mps", usual_ramp_mps);
     const double most = parameters.number("most_m");
     const bool velocity_too = parameters.flag("velocity_too");
-    return fault_of_epoch([=](Epoch& epoch, const FaultMoment& moment) {
+    return fault_of<&Fault::epoch>([=](Epoch& epoch, const FaultMoment& moment) {
         const double speed = std::hypot(rate.east, rate.north, rate.up);
         const double wanted = moment.since_start.value();
         const double seconds = speed > 0 ? std::min(wanted, most / speed) : 0;
@@ -78,8 +83,7 @@ Result<Fault> make_position_ramp(const Parameters& parameters, const FaultContex
         if (!velocity_too || !epoch.fix.has_position()) return;
         // How fast that offset changes: by itself up to its limit, and along the ramps.
         const Offset more = rate * ((seconds < wanted ? 0 : moment.strength) + seconds * moment.strength_rate);
-        const VelocityNed& v = epoch.fix.velocity;
-        put_velocity(epoch.fix, {v.north + more.north, v.east + more.east, v.down - more.up});
+        add_velocity(epoch.fix, more);
     });
 }
 
@@ -107,9 +111,10 @@ private:
 };
 
 Result<Fault> make_drift(const Parameters& parameters, const FaultContext& context) {
-    return fault_of_epoch([walk = RandomWalk(parameters, context)](Epoch& epoch, const FaultMoment& moment) mutable {
-        shift_place(epoch.fix, walk.at(moment.now) * moment.strength);
-    });
+    return fault_of<&Fault::epoch>(
+        [walk = RandomWalk(parameters, context)](Epoch& epoch, const FaultMoment& moment) mutable {
+            shift_place(epoch.fix, walk.at(moment.now) * moment.strength);
+        });
 }
 
 class Wander {
@@ -132,23 +137,22 @@ private:
 };
 
 Result<Fault> make_wander(const Parameters& parameters, const FaultContext& context) {
-    return fault_of_epoch([wander = Wander(parameters, context)](Epoch& epoch, const FaultMoment& moment) mutable {
-        shift_place(epoch.fix, wander.at(moment.now) * moment.strength);
-    });
+    return fault_of<&Fault::epoch>(
+        [wander = Wander(parameters, context)](Epoch& epoch, const FaultMoment& moment) mutable {
+            shift_place(epoch.fix, wander.at(moment.now) * moment.strength);
+        });
 }
 
 Result<Fault> make_velocity_bias(const Parameters& parameters, const FaultContext&) {
     const Offset bias = read_vector(parameters, "mps", usual_velocity_bias_mps);
-    return fault_of_epoch([bias](Epoch& epoch, const FaultMoment& moment) {
+    return fault_of<&Fault::epoch>([bias](Epoch& epoch, const FaultMoment& moment) {
         if (!epoch.fix.has_position()) return;
-        const Offset more = bias * moment.strength;
-        const VelocityNed& v = epoch.fix.velocity;
-        put_velocity(epoch.fix, {v.north + more.north, v.east + more.east, v.down - more.up});
+        add_velocity(epoch.fix, bias * moment.strength);
     });
 }
 
 Result<Fault> make_height_bias(const Parameters& parameters, const FaultContext&) {
-    return fault_of_epoch([height = parameters.number("height_m")](Epoch& epoch, const FaultMoment& moment) {
+    return fault_of<&Fault::epoch>([height = parameters.number("height_m")](Epoch& epoch, const FaultMoment& moment) {
         if (!epoch.fix.has_position()) return;
         epoch.fix.position.height.above_ellipsoid += Metres(height * moment.strength);
     });
@@ -162,7 +166,7 @@ void scale_dop(Dop& dop, double factor) {
 Result<Fault> make_biased_good_dop(const Parameters& parameters, const FaultContext&) {
     const Offset offset = read_offset(parameters);
     const double hdop = parameters.number("hdop"), accuracy = parameters.number("accuracy_m");
-    return fault_of_epoch([=](Epoch& epoch, const FaultMoment& moment) {
+    return fault_of<&Fault::epoch>([=](Epoch& epoch, const FaultMoment& moment) {
         Fix& fix = epoch.fix;
         if (!fix.has_position()) return;
         shift_place(fix, offset * moment.strength);
@@ -173,7 +177,7 @@ Result<Fault> make_biased_good_dop(const Parameters& parameters, const FaultCont
 }
 
 Result<Fault> make_accuracy_scale(const Parameters& parameters, const FaultContext&) {
-    return fault_of_epoch([factor = parameters.number("factor")](Epoch& epoch, const FaultMoment& moment) {
+    return fault_of<&Fault::epoch>([factor = parameters.number("factor")](Epoch& epoch, const FaultMoment& moment) {
         Fix& fix = epoch.fix;
         const double scale = std::pow(factor, moment.strength);
         fix.horizontal_accuracy = fix.horizontal_accuracy * scale;

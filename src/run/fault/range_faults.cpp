@@ -61,15 +61,13 @@ template <class Offset>
 Result<Fault> offset_pseudoranges(const Parameters& parameters, Offset offset) {
     auto chosen = ChosenSatellites::read(parameters);
     if (!chosen) return fail(chosen.error());
-    Fault fault;
-    fault.observations = [chosen = std::move(*chosen), offset](Observations& observations,
-                                                               const FaultMoment& moment) mutable {
-        chosen.choose(observations, moment.sky);
-        for (Observation& o : observations.signals)
-            if (o.pseudorange && chosen.has(o.satellite))
-                lengthen(o, Metres(moment.strength * offset(moment.since_start.value())), moment.terms);
-    };
-    return fault;
+    return fault_of<&Fault::observations>(
+        [chosen = std::move(*chosen), offset](Observations& observations, const FaultMoment& moment) mutable {
+            chosen.choose(observations, moment.sky);
+            for (Observation& o : observations.signals)
+                if (o.pseudorange && chosen.has(o.satellite))
+                    lengthen(o, Metres(moment.strength * offset(moment.since_start.value())), moment.terms);
+        });
 }
 
 Result<Fault> make_pseudorange_step(const Parameters& parameters, const FaultContext&) {
@@ -136,9 +134,7 @@ private:
 Result<Fault> make_cycle_slips(const Parameters& parameters, const FaultContext& context) {
     auto selector = read_selector(parameters);
     if (!selector) return fail(selector.error());
-    Fault fault;
-    fault.observations = CycleSlips(parameters, context, std::move(*selector));
-    return fault;
+    return fault_of<&Fault::observations>(CycleSlips(parameters, context, std::move(*selector)));
 }
 
 constexpr auto range_kinds = std::to_array<FaultKind>({

@@ -128,49 +128,32 @@ using firmware::FirmwareFaults;
 constexpr UbxMessageId mon_ver{0x0A, 0x04};
 constexpr double longest_delay_s = 3600;
 
-Result<Fault> make_receiver_silent(const Parameters&, const FaultContext&) {
-    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.mute = true; });
-}
-
-Result<Fault> make_receiver_deaf(const Parameters&, const FaultContext&) {
-    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.deaf = true; });
-}
-
-Result<Fault> make_never_answers(const Parameters&, const FaultContext&) {
-    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.unanswering = true; });
+template <bool FirmwareFaults::*flag>
+Result<Fault> switched(const Parameters&, const FaultContext&) {
+    return fault_of<&Fault::firmware>([](FirmwareFaults& faults, const FaultMoment&) { faults.*flag = true; });
 }
 
 // Messages that fall into one of the sets.
-Result<Fault> make_of_messages(const Parameters& parameters, std::set<UbxMessageId> FirmwareFaults::*set) {
+template <std::set<UbxMessageId> FirmwareFaults::*set>
+Result<Fault> of_messages(const Parameters& parameters, const FaultContext&) {
     auto messages = read_messages(parameters, "messages");
     if (!messages) return fail(messages.error());
-    return fault_of_firmware([set, messages = std::move(*messages)](FirmwareFaults& faults, const FaultMoment&) {
+    return fault_of<&Fault::firmware>([messages = std::move(*messages)](FirmwareFaults& faults, const FaultMoment&) {
         (faults.*set).insert(messages.begin(), messages.end());
     });
-}
-
-Result<Fault> make_answers_selectively(const Parameters& parameters, const FaultContext&) {
-    return make_of_messages(parameters, &FirmwareFaults::unanswered);
-}
-
-Result<Fault> make_refuses_messages(const Parameters& parameters, const FaultContext&) {
-    return make_of_messages(parameters, &FirmwareFaults::refused);
-}
-
-Result<Fault> make_withheld_messages(const Parameters& parameters, const FaultContext&) {
-    return make_of_messages(parameters, &FirmwareFaults::withheld);
 }
 
 Result<Fault> make_refuses_keys(const Parameters& parameters, const FaultContext&) {
     auto items = read_items(parameters, "keys");
     if (!items) return fail(items.error());
-    return fault_of_firmware([items = std::move(*items)](FirmwareFaults& faults, const FaultMoment&) {
+    return fault_of<&Fault::firmware>([items = std::move(*items)](FirmwareFaults& faults, const FaultMoment&) {
         faults.refused_keys.insert(items.begin(), items.end());
     });
 }
 
 Result<Fault> make_no_version(const Parameters&, const FaultContext&) {
-    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.unanswered.insert(mon_ver); });
+    return fault_of<&Fault::firmware>(
+        [](FirmwareFaults& faults, const FaultMoment&) { faults.unanswered.insert(mon_ver); });
 }
 
 Result<Fault> make_wrong_version(const Parameters& parameters, const FaultContext&) {
@@ -185,7 +168,7 @@ Result<Fault> make_wrong_version(const Parameters& parameters, const FaultContex
         if (text.size() > longest_text)
             return fail(ErrorCode::usage,
                         fmt::format("'{}' has {} characters; expected at most {}", text, text.size(), longest_text));
-    return fault_of_firmware([=](FirmwareFaults& faults, const FaultMoment&) {
+    return fault_of<&Fault::firmware>([=](FirmwareFaults& faults, const FaultMoment&) {
         if (!software.empty()) faults.software = software;
         if (!extensions.empty()) faults.extensions = extensions;
     });
@@ -207,7 +190,7 @@ Result<Fault> make_reboots(const Parameters& parameters, const FaultContext&) {
 // After the cold start it has satellites and no solution for so long.
 Result<Fault> make_slow_cold_start(const Parameters& parameters, const FaultContext&) {
     const double without_fix = parameters.number("without_fix_s");
-    Fault fault = fault_of_epoch([without_fix](Epoch& epoch, const FaultMoment& moment) {
+    Fault fault = fault_of<&Fault::epoch>([without_fix](Epoch& epoch, const FaultMoment& moment) {
         if (moment.since_start.value() >= without_fix) return;
         epoch.fix.type = FixType::none;
         for (SatelliteStatus& s : epoch.fix.satellites)
@@ -224,30 +207,25 @@ Result<Fault> make_changed_baud(const Parameters& parameters, const FaultContext
     return fault;
 }
 
-Result<Fault> make_jamming_flag_hidden(const Parameters&, const FaultContext&) {
-    return fault_of_firmware([](FirmwareFaults& faults, const FaultMoment&) { faults.jamming_hidden = true; });
-}
-
 Result<Fault> make_slow_answers(const Parameters& parameters, const FaultContext&) {
-    return fault_of_firmware([delay = parameters.number("delay_s")](FirmwareFaults& faults, const FaultMoment& moment) {
-        faults.answer_delay += Seconds(delay * moment.strength);
-    });
+    return fault_of<&Fault::firmware>(
+        [delay = parameters.number("delay_s")](FirmwareFaults& faults, const FaultMoment& moment) {
+            faults.answer_delay += Seconds(delay * moment.strength);
+        });
 }
 
 Result<Fault> make_solution_latency(const Parameters& parameters, const FaultContext&) {
     const double delay = parameters.number("delay_s"), growth = parameters.number("growth_s_per_s");
-    return fault_of_firmware([=](FirmwareFaults& faults, const FaultMoment& moment) {
+    return fault_of<&Fault::firmware>([=](FirmwareFaults& faults, const FaultMoment& moment) {
         const double grown = std::min(longest_delay_s, delay + growth * moment.since_start.value());
         faults.solution_delay += Seconds(grown * moment.strength);
     });
 }
 
 Result<Fault> make_clock_drift(const Parameters& parameters, const FaultContext&) {
-    Fault fault;
-    fault.pace = [ppm = parameters.number("ppm")](PaceConditions& pace, const FaultMoment& moment) {
+    return fault_of<&Fault::pace>([ppm = parameters.number("ppm")](PaceConditions& pace, const FaultMoment& moment) {
         pace.rate *= 1 + ppm * 1e-6 * moment.strength;
-    };
-    return fault;
+    });
 }
 
 constexpr ParameterSpec name_list(std::string_view name, std::string_view meaning) {
@@ -259,22 +237,22 @@ constexpr auto switched_kinds = without_strength(std::to_array<FaultKind>(
       "The receiver sends nothing at all, and hears and navigates on.",
       "Firmware that hangs or a transmit pin that is dead, in flight (betaflight #13946, #15685).",
       {},
-      make_receiver_silent},
+      switched<&FirmwareFaults::mute>},
      {"receiver_deaf",
       "The receiver hears nothing; its messages go on.",
       "A receive line that is not connected, which naive clients notice at configuration only.",
       {},
-      make_receiver_deaf},
+      switched<&FirmwareFaults::deaf>},
      {"never_answers",
       "The receiver executes what it hears, and answers nothing.",
       "Clones that take commands and have no acknowledgements.",
       {},
-      make_never_answers},
+      switched<&FirmwareFaults::unanswering>},
      {"answers_selectively",
       "The receiver executes the named messages, and does not answer them.",
       "Clones and old firmware that know a part of the protocol.",
       {name_list("messages", "names of messages that stay unanswered: MON-VER, CFG-VALSET, UBX-0A-04")},
-      make_answers_selectively},
+      of_messages<&FirmwareFaults::unanswered>},
      {"no_version",
       "MON-VER is never answered.",
       "Clones, and receivers that are still busy when the client asks (betaflight #15676).",
@@ -284,7 +262,7 @@ constexpr auto switched_kinds = without_strength(std::to_array<FaultKind>(
       "The named messages are not sent with the epochs, whatever is configured.",
       "A configuration that was lost in part, or a message that the firmware no longer has.",
       {name_list("messages", "names of messages that are not sent: NAV-PVT, GGA")},
-      make_withheld_messages},
+      of_messages<&FirmwareFaults::withheld>},
      {"refuses_keys",
       "CFG-VALSET with one of the named items is answered with ACK-NAK, and nothing of it is taken.",
       "Items that a firmware does not have, sent together with those that it has.",
@@ -294,7 +272,7 @@ constexpr auto switched_kinds = without_strength(std::to_array<FaultKind>(
       "The named messages are answered with ACK-NAK and do nothing; sentences do nothing.",
       "Old and new firmware that does not know each other's configuration messages.",
       {name_list("messages", "names of messages that are refused: CFG-GNSS, CFG-VALSET")},
-      make_refuses_messages},
+      of_messages<&FirmwareFaults::refused>},
      {"wrong_version",
       "MON-VER tells another firmware.",
       "Clones with borrowed version strings, and updates that a driver has never seen.",
@@ -305,7 +283,7 @@ constexpr auto switched_kinds = without_strength(std::to_array<FaultKind>(
       "MON-HW and MON-RF say that interference is unknown; SEC-SIG alone tells it, on boards that have it.",
       "F9 HPG 1.50 and later, on which drivers that read MON-RF see no jamming (PX4-GPSDrivers #231).",
       {},
-      make_jamming_flag_hidden},
+      switched<&FirmwareFaults::jamming_hidden>},
      {"forgets_configuration",
       "All settings are those of the factory, the speed among them, without a banner; it navigates on. "
       "The end of the fault gives nothing back: the client has to.",

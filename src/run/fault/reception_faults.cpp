@@ -12,7 +12,6 @@ constexpr double fastest_echo = 0.5;  // m/s by which an echo's excess changes: 
 constexpr int most_reflections = 2;
 
 struct MultipathBurst {
-    SignalSelector selector;
     FaultContext context;
     double share = 0.5;
     double excess = 60;  // m at most
@@ -41,23 +40,16 @@ std::optional<Echo> draw_echo(const MultipathBurst& burst, const Arrival& arriva
 }
 
 Result<Fault> make_multipath_burst(const Parameters& parameters, const FaultContext& context) {
-    auto selector = read_selector(parameters);
-    if (!selector) return fail(selector.error());
-    MultipathBurst burst{std::move(*selector),           context,
-                         parameters.number("share"),     parameters.number("excess_m"),
-                         parameters.number("amplitude"), parameters.number("change_s")};
-    Fault fault;
-    fault.arrivals = [burst = std::move(burst)](Arrivals& arrivals, const FaultMoment& moment) {
-        for (Arrival& arrival : arrivals.satellites) {
-            if (arrival.paths == 0 || !burst.selector.takes(arrival)) continue;
-            const std::optional<Echo> echo = draw_echo(burst, arrival, moment);
-            if (!echo || echo->amplitude <= 0) continue;
-            arrival.echoes_known = true;
-            arrival.echoes.insert(arrival.echoes.begin(), *echo);
-            ++arrival.paths;
-        }
-    };
-    return fault;
+    const MultipathBurst burst{context, parameters.number("share"), parameters.number("excess_m"),
+                               parameters.number("amplitude"), parameters.number("change_s")};
+    return fault_of_selected(parameters, [burst](Arrival& arrival, const SignalSelector&, const FaultMoment& moment) {
+        if (arrival.paths == 0) return;
+        const std::optional<Echo> echo = draw_echo(burst, arrival, moment);
+        if (!echo || echo->amplitude <= 0) return;
+        arrival.echoes_known = true;
+        arrival.echoes.insert(arrival.echoes.begin(), *echo);
+        ++arrival.paths;
+    });
 }
 
 }  // namespace
@@ -97,33 +89,23 @@ void attenuate(Arrival& arrival, const SignalSelector& selector, Decibels loss) 
 }
 
 Result<Fault> make_outage(const Parameters& parameters, const FaultContext&) {
-    auto selector = read_selector(parameters);
-    if (!selector) return fail(selector.error());
-    Fault fault;
-    fault.arrivals = [selector = std::move(*selector)](Arrivals& arrivals, const FaultMoment& moment) {
-        for (Arrival& arrival : arrivals.satellites) {
-            if (!selector.takes(arrival)) continue;
-            if (moment.strength < 1)
-                attenuate(arrival, selector, attenuation_before_silence * moment.strength);
-            else if (selector.by_signal())
-                silence_signals(arrival, selector);
-            else
-                silence(arrival);
-        }
-    };
-    return fault;
+    return fault_of_selected(parameters,
+                             [](Arrival& arrival, const SignalSelector& selector, const FaultMoment& moment) {
+                                 if (moment.strength < 1)
+                                     attenuate(arrival, selector, attenuation_before_silence * moment.strength);
+                                 else if (selector.by_signal())
+                                     silence_signals(arrival, selector);
+                                 else
+                                     silence(arrival);
+                             });
 }
 
 Result<Fault> make_cn0_drop(const Parameters& parameters, const FaultContext&) {
-    auto selector = read_selector(parameters);
-    if (!selector) return fail(selector.error());
     const Decibels loss(parameters.number("attenuation_db"));
-    Fault fault;
-    fault.arrivals = [selector = std::move(*selector), loss](Arrivals& arrivals, const FaultMoment& moment) {
-        for (Arrival& arrival : arrivals.satellites)
-            if (selector.takes(arrival)) attenuate(arrival, selector, loss * moment.strength);
-    };
-    return fault;
+    return fault_of_selected(parameters,
+                             [loss](Arrival& arrival, const SignalSelector& selector, const FaultMoment& moment) {
+                                 attenuate(arrival, selector, loss * moment.strength);
+                             });
 }
 
 template <AntennaStatus status>

@@ -56,43 +56,32 @@ void put_old_solution(NavigationState& state, const NavigationState& old) {
     state.course_is_frozen = old.course_is_frozen;
 }
 
-// What was reported as the fault began.
-class FirstReport {
-public:
-    const NavigationState& of(const NavigationState& state) {
-        if (!first_) first_ = state;
-        return *first_;
-    }
-
-private:
-    std::optional<NavigationState> first_;
-};
-
 Result<Fault> make_freeze(const Parameters& parameters, const FaultContext&) {
     const bool stands_still = parameters.text("velocity") == "zero";
-    return fault_of_report([stands_still, first = FirstReport()](NavigationState& state, const FaultMoment&) mutable {
-        put_old_solution(state, first.of(state));
-        if (stands_still) put_velocity(state.epoch.fix, {});
-    });
+    return fault_of<&Fault::report>(
+        [stands_still, first = First<NavigationState>()](NavigationState& state, const FaultMoment&) mutable {
+            put_old_solution(state, first.of(state));
+            if (stands_still) put_velocity(state.epoch.fix, {});
+        });
 }
 
 Result<Fault> make_stale_position(const Parameters&, const FaultContext&) {
-    return fault_of_report([first = FirstReport()](NavigationState& state, const FaultMoment&) mutable {
-        put_old_solution(state, first.of(state));
-        claim_type(state, FixType::none);
-        state.old_position_shown = true;
-    });
+    return fault_of<&Fault::report>(
+        [first = First<NavigationState>()](NavigationState& state, const FaultMoment&) mutable {
+            put_old_solution(state, first.of(state));
+            claim_type(state, FixType::none);
+            state.old_position_shown = true;
+        });
 }
 
 Result<Fault> make_wrong_fix_type(const Parameters& parameters, const FaultContext&) {
-    return fault_of_report([type = fix_type_of(parameters.text("type"))](NavigationState& state, const FaultMoment&) {
-        claim_type(state, type);
-    });
+    return fault_of<&Fault::report>([type = fix_type_of(parameters.text("type"))](
+                                        NavigationState& state, const FaultMoment&) { claim_type(state, type); });
 }
 
 Result<Fault> make_zero_position(const Parameters& parameters, const FaultContext&) {
     const FixType type = fix_type_of(parameters.text("type"));
-    return fault_of_report([type](NavigationState& state, const FaultMoment&) {
+    return fault_of<&Fault::report>([type](NavigationState& state, const FaultMoment&) {
         constexpr double geoid_at_zero_m = 17;  // EGM96 at 0° N 0° E
         claim_type(state, type);
         state.ever_had_fix = state.position_known = true;
@@ -108,7 +97,7 @@ Result<Fault> make_rtk_transition(const Parameters& parameters, const FaultConte
     const double east = parameters.number("east_m"), north = parameters.number("north_m"),
                  up = parameters.number("up_m");
     const double accuracy = parameters.number("accuracy_m");
-    return fault_of_report([=](NavigationState& state, const FaultMoment& moment) {
+    return fault_of<&Fault::report>([=](NavigationState& state, const FaultMoment& moment) {
         Fix& fix = state.epoch.fix;
         if (!fix.has_position()) return;
         claim_type(state, type);
@@ -126,11 +115,11 @@ Result<Fault> make_rtk_transition(const Parameters& parameters, const FaultConte
 }
 
 Result<Fault> make_heading_lost(const Parameters&, const FaultContext&) {
-    return fault_of_report([](NavigationState& state, const FaultMoment&) { state.epoch.relative.reset(); });
+    return fault_of<&Fault::report>([](NavigationState& state, const FaultMoment&) { state.epoch.relative.reset(); });
 }
 
 Result<Fault> make_heading_flipped(const Parameters&, const FaultContext&) {
-    return fault_of_report([](NavigationState& state, const FaultMoment&) {
+    return fault_of<&Fault::report>([](NavigationState& state, const FaultMoment&) {
         if (!state.epoch.relative) return;
         RelativePosition& r = *state.epoch.relative;
         r.north_m = -r.north_m;
@@ -167,7 +156,7 @@ void add_unseen_satellites(std::vector<SatelliteStatus>& satellites, int count) 
 
 Result<Fault> make_satellites_misreported(const Parameters& parameters, const FaultContext&) {
     const int count = static_cast<int>(parameters.number("count"));
-    return fault_of_report([count](NavigationState& state, const FaultMoment&) {
+    return fault_of<&Fault::report>([count](NavigationState& state, const FaultMoment&) {
         std::vector<SatelliteStatus>& satellites = state.epoch.fix.satellites;
         int used = state.epoch.fix.satellites_used();
         for (auto s = satellites.rbegin(); s != satellites.rend() && used > count; ++s)
@@ -183,27 +172,28 @@ Result<Fault> make_satellites_misreported(const Parameters& parameters, const Fa
     });
 }
 
-Edit<NavigationState> at_random_epochs(double probability, RandomStream random,
-                                       const std::function<void(NavigationState&)>& change) {
-    return [probability, drawn = random, change](NavigationState& state, const FaultMoment& moment) mutable {
-        if (drawn.uniform() < probability * moment.strength) change(state);
-    };
+Result<Fault> at_random_epochs(const Parameters& parameters, RandomStream random,
+                               std::function<void(NavigationState&)> change) {
+    return fault_of<&Fault::report>(
+        [probability = parameters.number("probability"), drawn = std::move(random), change = std::move(change)](
+            NavigationState& state, const FaultMoment& moment) mutable {
+            if (drawn.uniform() < probability * moment.strength) change(state);
+        });
 }
 
 Result<Fault> make_dropped_epochs(const Parameters& parameters, const FaultContext& context) {
-    return fault_of_report(at_random_epochs(parameters.number("probability"), context.stream("dropped"),
-                                            [](NavigationState& state) { state.reports = 0; }));
+    return at_random_epochs(parameters, context.stream("dropped"), [](NavigationState& state) { state.reports = 0; });
 }
 
 Result<Fault> make_duplicated_epochs(const Parameters& parameters, const FaultContext& context) {
-    return fault_of_report(at_random_epochs(parameters.number("probability"), context.stream("duplicated"),
-                                            [](NavigationState& state) { state.reports *= 2; }));
+    return at_random_epochs(parameters, context.stream("duplicated"),
+                            [](NavigationState& state) { state.reports *= 2; });
 }
 
 Result<Fault> make_reordered_epochs(const Parameters& parameters, const FaultContext& context) {
     const Seconds delay(parameters.number("delay_s"));
-    return fault_of_report(at_random_epochs(parameters.number("probability"), context.stream("reordered"),
-                                            [delay](NavigationState& state) { state.report_delay += delay; }));
+    return at_random_epochs(parameters, context.stream("reordered"),
+                            [delay](NavigationState& state) { state.report_delay += delay; });
 }
 
 constexpr ParameterSpec epoch_share(double standard) {

@@ -18,9 +18,8 @@ template <class Ahead>
 Result<Fault> make_clock_fault(const Parameters& parameters, Ahead ahead) {
     auto chosen = ChosenSatellites::read(parameters);
     if (!chosen) return fail(chosen.error());
-    Fault fault;
-    fault.arrivals = [chosen = std::move(*chosen), ahead, rates = RateOfChange()](Arrivals& arrivals,
-                                                                                  const FaultMoment& moment) mutable {
+    return fault_of<&Fault::arrivals>([chosen = std::move(*chosen), ahead, rates = RateOfChange()](
+                                          Arrivals& arrivals, const FaultMoment& moment) mutable {
         chosen.choose(arrivals);
         const Metres shorter(speed_of_light * ahead(moment.since_start.value()) * moment.strength);
         for (Arrival& arrival : arrivals.satellites) {
@@ -28,8 +27,7 @@ Result<Fault> make_clock_fault(const Parameters& parameters, Ahead ahead) {
             arrival.signal_in_space_error -= shorter;
             arrival.range_rate_error -= rates.of(arrival.id, shorter, moment.now);
         }
-    };
-    return fault;
+    });
 }
 
 Result<Fault> make_satellite_clock_step(const Parameters& parameters, const FaultContext&) {
@@ -67,9 +65,8 @@ Result<Fault> make_wrong_ephemeris(const Parameters& parameters, const FaultCont
     if (error.along == 0 && error.cross == 0 && error.radial == 0)
         return fail(ErrorCode::usage, "no error is told; expected along_track_m, cross_track_m or radial_m");
     const double growth = parameters.number("growth_s");
-    Fault fault;
-    fault.arrivals = [chosen = std::move(*chosen), error, growth, rates = RateOfChange()](
-                         Arrivals& arrivals, const FaultMoment& moment) mutable {
+    return fault_of<&Fault::arrivals>([chosen = std::move(*chosen), error, growth, rates = RateOfChange()](
+                                          Arrivals& arrivals, const FaultMoment& moment) mutable {
         if (!knows_the_sky(moment, arrivals)) return;
         chosen.choose(arrivals);
         const double grown = growth > 0 ? std::min(moment.since_start.value() / growth, 1.0) : 1;
@@ -84,19 +81,13 @@ Result<Fault> make_wrong_ephemeris(const Parameters& parameters, const FaultCont
             arrival.signal_in_space_error += off;
             arrival.range_rate_error += rates.of(arrival.id, off, moment.now);
         }
-    };
-    return fault;
+    });
 }
 
 Result<Fault> make_unhealthy(const Parameters& parameters, const FaultContext&) {
-    auto selector = read_selector(parameters);
-    if (!selector) return fail(selector.error());
-    Fault fault;
-    fault.arrivals = [selector = std::move(*selector)](Arrivals& arrivals, const FaultMoment&) {
-        for (Arrival& arrival : arrivals.satellites)
-            if (selector.takes(arrival)) arrival.called_unhealthy = true;
-    };
-    return fault;
+    return fault_of_selected(parameters, [](Arrival& arrival, const SignalSelector&, const FaultMoment&) {
+        arrival.called_unhealthy = true;
+    });
 }
 
 // Vertical delay at L1 beside what the day has, as a plane over the antenna, m.
@@ -136,28 +127,18 @@ Result<Fault> make_ionospheric_storm(const Parameters& parameters, const FaultCo
                            Angle::degrees(parameters.number("gradient_towards_deg"))};
     if (storm.factor == 1 && storm.vertical == 0 && storm.gradient == 0)
         return fail(ErrorCode::usage, "no storm is told; expected tec_factor, vertical_delay_m or gradient_mm_per_km");
-    Fault fault;
-    fault.arrivals = [storm](Arrivals& arrivals, const FaultMoment& moment) {
+    return fault_of<&Fault::arrivals>([storm](Arrivals& arrivals, const FaultMoment& moment) {
         for (Arrival& arrival : arrivals.satellites)
             storm_over(arrival, storm, moment);
-    };
-    return fault;
+    });
 }
 
 Result<Fault> make_scintillation(const Parameters& parameters, const FaultContext&) {
-    auto selector = read_selector(parameters);
-    if (!selector) return fail(selector.error());
-    Fault fault;
-    fault.arrivals = [selector = std::move(*selector), s4 = parameters.number("s4"),
-                      phase = parameters.number("sigma_phi_rad")](Arrivals& arrivals, const FaultMoment& moment) {
-        for (Arrival& arrival : arrivals.satellites) {
-            if (!selector.takes(arrival)) continue;
-            arrival.amplitude_scintillation = std::max(arrival.amplitude_scintillation, s4 * moment.strength);
-            arrival.phase_scintillation =
-                std::max(arrival.phase_scintillation, Angle::radians(phase * moment.strength));
-        }
-    };
-    return fault;
+    const double s4 = parameters.number("s4"), phase = parameters.number("sigma_phi_rad");
+    return fault_of_selected(parameters, [=](Arrival& arrival, const SignalSelector&, const FaultMoment& moment) {
+        arrival.amplitude_scintillation = std::max(arrival.amplitude_scintillation, s4 * moment.strength);
+        arrival.phase_scintillation = std::max(arrival.phase_scintillation, Angle::radians(phase * moment.strength));
+    });
 }
 
 constexpr auto satellite_kinds = std::to_array<FaultKind>({

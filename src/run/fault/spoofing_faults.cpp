@@ -237,12 +237,10 @@ Result<Fault> make_spoof_flapping(const Parameters& parameters, const FaultConte
     const double period = parameters.number("period_s"), duty = parameters.number("duty");
     const SpoofingIndication indication =
         parameters.text("indication") == "several" ? SpoofingIndication::several : SpoofingIndication::indicated;
-    Fault fault;
-    fault.epoch = [period, duty, indication](Epoch& epoch, const FaultMoment& moment) {
+    return fault_of<&Fault::epoch>([period, duty, indication](Epoch& epoch, const FaultMoment& moment) {
         const double phase = moment.since_start.value() / period;
         if (phase - std::floor(phase) < duty) epoch.front_end.spoofing = indication;
-    };
-    return fault;
+    });
 }
 
 constexpr auto spoofing_kinds = std::to_array<FaultKind>({

@@ -40,7 +40,7 @@ void shift_time(NavigationState& state, Nanoseconds by) {
 Result<Fault> make_leap_second_wrong(const Parameters& parameters, const FaultContext&) {
     const auto error = static_cast<int>(parameters.number("error_s"));
     const bool declared_valid = parameters.flag("declared_valid");
-    return fault_of_report([error, declared_valid](NavigationState& state, const FaultMoment&) {
+    return fault_of<&Fault::report>([error, declared_valid](NavigationState& state, const FaultMoment&) {
         state.epoch.fix.leap_seconds += error;
         state.time.leap_seconds = declared_valid;
         if (!state.leap_event) return;
@@ -65,7 +65,7 @@ Result<Fault> make_leap_second_event(const Parameters& parameters, const FaultCo
         GpsTime end;  ///< by end_of_utc_day()
         int announced = 0;
     };
-    return fault_of_report(
+    return fault_of<&Fault::report>(
         [change, day = std::optional<Day>()](NavigationState& state, const FaultMoment& moment) mutable {
             const int announced = LeapSeconds::announced().offset(moment.now), believed = state.epoch.fix.leap_seconds;
             if (!day) day = Day{end_of_utc_day(moment.now, believed), announced};
@@ -77,56 +77,47 @@ Result<Fault> make_leap_second_event(const Parameters& parameters, const FaultCo
 
 Result<Fault> make_week_rollover(const Parameters& parameters, const FaultContext&) {
     const auto rollovers = static_cast<std::int64_t>(parameters.number("rollovers"));
-    return fault_of_report([back = rollovers * weeks_of_rollover](NavigationState& state, const FaultMoment&) {
+    return fault_of<&Fault::report>([back = rollovers * weeks_of_rollover](NavigationState& state, const FaultMoment&) {
         shift_time(state, -std::chrono::seconds(back * seconds_per_week));
     });
 }
 
 Result<Fault> make_week_order(const Parameters& parameters, const FaultContext&) {
-    return fault_of_report([lag = Seconds(parameters.number("lag_s"))](NavigationState& state, const FaultMoment&) {
-        state.week_lag = lag;
-    });
+    return fault_of<&Fault::report>([lag = Seconds(parameters.number("lag_s"))](
+                                        NavigationState& state, const FaultMoment&) { state.week_lag = lag; });
 }
 
 Result<Fault> make_time_step(const Parameters& parameters, const FaultContext&) {
-    return fault_of_report([step = parameters.number("step_s")](NavigationState& state, const FaultMoment& moment) {
-        shift_time(state, to_nanoseconds(Seconds(step * moment.strength)));
-    });
+    return fault_of<&Fault::report>(
+        [step = parameters.number("step_s")](NavigationState& state, const FaultMoment& moment) {
+            shift_time(state, to_nanoseconds(Seconds(step * moment.strength)));
+        });
 }
 
-// The true time of an epoch, counted from the first one of the fault: what is reported may be wrong by other faults.
-class FirstTime {
-public:
-    Seconds until(GpsTime time) {
-        if (!first_) first_ = time;
-        return difference(time, *first_);
-    }
-
-private:
-    std::optional<GpsTime> first_;
-};
+// @param rate s per s of the true time, counted from the first epoch of the fault: what is reported may be wrong by
+// other faults
+Fault running_off(double rate) {
+    return fault_of<&Fault::report>(
+        [rate, first = First<GpsTime>()](NavigationState& state, const FaultMoment& moment) mutable {
+            const Seconds since = difference(moment.now, first.of(moment.now));
+            shift_time(state, to_nanoseconds(since * (rate * moment.strength)));
+        });
+}
 
 Result<Fault> make_time_backwards(const Parameters& parameters, const FaultContext&) {
-    return fault_of_report([rate = parameters.number("rate"), first = FirstTime()](NavigationState& state,
-                                                                                   const FaultMoment& moment) mutable {
-        const Seconds since = first.until(moment.now);
-        shift_time(state, to_nanoseconds(since * (-(1 + rate) * moment.strength)));
-    });
+    return running_off(-(1 + parameters.number("rate")));
 }
 
 Result<Fault> make_time_drift(const Parameters& parameters, const FaultContext&) {
-    return fault_of_report([ppm = parameters.number("ppm"), first = FirstTime()](NavigationState& state,
-                                                                                 const FaultMoment& moment) mutable {
-        const Seconds since = first.until(moment.now);
-        shift_time(state, to_nanoseconds(since * (ppm * 1e-6 * moment.strength)));
-    });
+    return running_off(parameters.number("ppm") * 1e-6);
 }
 
 Result<Fault> make_date_unknown(const Parameters& parameters, const FaultContext&) {
-    return fault_of_report([time_too = parameters.flag("time_too")](NavigationState& state, const FaultMoment&) {
-        state.time.date = state.time.leap_seconds = state.time.confirmed = false;
-        if (time_too) state.time.time = false;
-    });
+    return fault_of<&Fault::report>(
+        [time_too = parameters.flag("time_too")](NavigationState& state, const FaultMoment&) {
+            state.time.date = state.time.leap_seconds = state.time.confirmed = false;
+            if (time_too) state.time.time = false;
+        });
 }
 
 constexpr std::string_view leap_second_changes[] = {"inserted", "deleted"};

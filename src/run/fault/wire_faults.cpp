@@ -28,14 +28,12 @@ constexpr ParameterSpec wire_direction =
 
 Fault worsened(const Parameters& parameters, WireWorsening worsen) {
     const std::string direction = parameters.text("direction");
-    Fault fault;
-    fault.wire = [to_client = direction != "to_receiver", to_receiver = direction != "to_client",
-                  worsen = std::move(worsen)](WireConditions& wire, const FaultMoment& moment) {
+    return fault_of<&Fault::wire>([to_client = direction != "to_receiver", to_receiver = direction != "to_client",
+                                   worsen = std::move(worsen)](WireConditions& wire, const FaultMoment& moment) {
         if (moment.strength <= 0) return;
         if (to_client) worsen(wire.to_client, moment);
         if (to_receiver) worsen(wire.to_receiver, moment);
-    };
-    return fault;
+    });
 }
 
 // Raises one probability of a direction.
@@ -97,11 +95,9 @@ Result<Fault> make_dead(const Parameters& parameters, const FaultContext&) {
 
 template <bool WireConditions::*which>
 Result<Fault> whole_wire(const Parameters&, const FaultContext&) {
-    Fault fault;
-    fault.wire = [](WireConditions& wire, const FaultMoment& moment) {
+    return fault_of<&Fault::wire>([](WireConditions& wire, const FaultMoment& moment) {
         if (moment.strength > 0) wire.*which = true;
-    };
-    return fault;
+    });
 }
 
 Result<Fault> make_power_cut(const Parameters& parameters, const FaultContext&) {
@@ -121,12 +117,10 @@ Result<Fault> make_power_cut(const Parameters& parameters, const FaultContext&) 
 }
 
 Result<Fault> make_speed_mismatch(const Parameters& parameters, const FaultContext&) {
-    Fault fault;
-    fault.wire = [baud = static_cast<std::uint32_t>(parameters.number("baud"))](WireConditions& wire,
-                                                                                const FaultMoment& moment) {
+    return fault_of<&Fault::wire>([baud = static_cast<std::uint32_t>(parameters.number("baud"))](
+                                      WireConditions& wire, const FaultMoment& moment) {
         if (moment.strength > 0) wire.receiver_baud = baud;
-    };
-    return fault;
+    });
 }
 
 constexpr ParameterList chance(double standard, std::string_view meaning) {

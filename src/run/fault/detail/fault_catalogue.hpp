@@ -46,25 +46,27 @@ std::vector<FaultKind> time_fault_kinds();       ///< of the solution
 std::vector<FaultKind> receiver_fault_kinds();
 std::vector<FaultKind> wire_fault_kinds();
 
-/// A fault that edits epochs, before the firmware sees them: what the receiver believes, its coasting and limits among
-/// it.
-inline Fault fault_of_epoch(Edit<Epoch> edit) {
+/// A fault of one edit: fault_of<&Fault::epoch>(…). An edit of epochs is of what the receiver believes, its coasting
+/// and limits among it; of one of reports the receiver itself knows nothing.
+template <auto edit, class Change>
+Fault fault_of(Change change) {
     Fault fault;
-    fault.epoch = std::move(edit);
+    fault.*edit = std::move(change);
     return fault;
 }
-/// A fault that edits what is reported, of which the receiver itself knows nothing.
-inline Fault fault_of_report(Edit<firmware::NavigationState> edit) {
-    Fault fault;
-    fault.report = std::move(edit);
-    return fault;
-}
-/// A fault of how the receiver behaves.
-inline Fault fault_of_firmware(Edit<firmware::FirmwareFaults> edit) {
-    Fault fault;
-    fault.firmware = std::move(edit);
-    return fault;
-}
+
+/// The first that it was given. State: that.
+template <class T>
+class First {
+public:
+    const T& of(const T& value) {
+        if (!first_) first_ = value;
+        return *first_;
+    }
+
+private:
+    std::optional<T> first_;
+};
 
 /// A place that lies off another one: metres at its height, which set out east and north and follow the ellipsoid, and
 /// metres up. A tangent plane would be 8 m above the ground after 10 km.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "run/fault/fault_kind.hpp"
+#include "fault_catalogue.hpp"
 #include "world/gnss/signal.hpp"
 
 namespace skyloop::inline run {
@@ -45,6 +45,19 @@ inline constexpr ParameterList satellite_selector{
 inline constexpr ParameterList signal_selector = satellite_selector + ParameterList{signals_parameter};
 /// What these parameters say; fails with `usage` where they contradict each other.
 Result<SignalSelector> read_selector(const Parameters& parameters);
+
+/// A fault of the arrivals that its parameters select.
+/// @param edit of one of them: (Arrival&, const SignalSelector&, const FaultMoment&)
+template <class EditOne>
+Result<Fault> fault_of_selected(const Parameters& parameters, EditOne edit) {
+    auto selector = read_selector(parameters);
+    if (!selector) return fail(selector.error());
+    return fault_of<&Fault::arrivals>(
+        [selector = std::move(*selector), edit = std::move(edit)](Arrivals& arrivals, const FaultMoment& moment) {
+            for (Arrival& arrival : arrivals.satellites)
+                if (selector.takes(arrival)) edit(arrival, selector, moment);
+        });
+}
 
 /// Satellites by name, and the number that is taken when none is named.
 inline constexpr ParameterList chosen_satellites{
