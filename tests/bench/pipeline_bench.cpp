@@ -76,7 +76,7 @@ void epoch(benchmark::State& state, ErrorModelKind kind) {
     auto navigation = load_navigation(scenario, bench_start);
     std::vector<std::string> warnings;
     const auto geoid = find_geoid(bench_data(), warnings);
-    auto made = make_simulation(scenario, std::move(navigation->source), geoid.get(), bench_start);
+    auto made = make_simulation(scenario, {std::move(navigation->source), geoid.get(), bench_start});
     Simulation& simulation = *made;
     GpsTime time = bench_start;
     std::size_t in_view = 0;
@@ -109,7 +109,7 @@ struct ModernBench {
         settings = effective(scenario.model.modern);
     }
     Simulation simulation() {
-        return std::move(*make_simulation(scenario, std::move(source), geoid.get(), start, bench_data()));
+        return std::move(*make_simulation(scenario, {std::move(source), geoid.get(), start, bench_data()}));
     }
     // The numbers repeat after an hour, for which every record is at hand.
     [[nodiscard]] GpsTime at(std::int64_t index) const { return start + std::chrono::seconds(index % 3600); }
@@ -182,7 +182,7 @@ BENCHMARK_CAPTURE(modern_part, solution, Part::solution)->UseManualTime()->Itera
 void nmea_sentences(benchmark::State& state) {
     const Scenario scenario = open_sky(ErrorModelKind::baseline);
     auto navigation = load_navigation(scenario, bench_start);
-    auto simulation = make_simulation(scenario, std::move(navigation->source), nullptr, bench_start);
+    auto simulation = make_simulation(scenario, {std::move(navigation->source), nullptr, bench_start});
     firmware::NavigationState one;
     one.epoch = simulation->run(bench_start, {}).epoch;
     one.fix_ok = one.ever_had_fix = one.position_known = true;

@@ -34,7 +34,7 @@ class Unit(unittest.TestCase):
             return re.findall(rf"^{key}=(.*)$", self.text, re.MULTILINE)
 
         self.assertEqual((value("PrivateDevices"), value("RestrictRealtime")), (["no"], ["no"]))
-        self.assertGreaterEqual(int(value("LimitRTPRIO")[0]), 10)  # src/run/emulator/thread_priority.cpp asks for 10
+        self.assertGreaterEqual(int(value("LimitRTPRIO")[0]), 10)  # src/run/emulator/real_time.cpp asks for 10
         self.assertEqual(value("LimitMEMLOCK"), ["infinity"])
         for device in ("char-ttyS", "char-ttyUSB", "char-ttyACM", "char-ttyTHS", "char-ttymxc", "char-rfcomm", "char-pts",
                        "/dev/ptmx", "char-hidraw", "char-usb_device"):

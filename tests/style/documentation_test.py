@@ -55,7 +55,7 @@ def board_sources():
 
 def columns(header):
     """Columns of a table whose header line is the C++ constant `header`."""
-    text = re.search(rf"{header} =((?:\s*\"[^\"]*\")+);", read("src/run/emulator/detail/trace_rows.hpp")).group(1)
+    text = re.search(rf"{header} =((?:\s*\"[^\"]*\")+);", read("src/run/emulator/detail/recording_formats.hpp")).group(1)
     return "".join(re.findall(r'"([^"]*)"', text)).removesuffix("\\n").split(",")
 
 

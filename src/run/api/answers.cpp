@@ -20,27 +20,10 @@ namespace {
 
 constexpr float most_attenuation_db = 100, most_excess_m = 100'000;
 
-std::uint8_t fix_type_number(FixType type) {
-    switch (type) {
-        case FixType::none:
-            return SKY_FIX_NONE;
-        case FixType::dead_reckoning:
-            return SKY_FIX_DEAD_RECKONING;
-        case FixType::fix_2d:
-            return SKY_FIX_2D;
-        case FixType::fix_3d:
-            return SKY_FIX_3D;
-        case FixType::dgnss:
-            return SKY_FIX_DGNSS;
-        case FixType::rtk_float:
-            return SKY_FIX_RTK_FLOAT;
-        case FixType::rtk_fixed:
-            return SKY_FIX_RTK_FIXED;
-        case FixType::time_only:
-            return SKY_FIX_TIME_ONLY;
-    }
-    return SKY_FIX_NONE;
-}
+// In the order of FixType.
+constexpr std::array<std::uint8_t, 8> fix_type_numbers{SKY_FIX_NONE,      SKY_FIX_DEAD_RECKONING, SKY_FIX_2D,
+                                                       SKY_FIX_3D,        SKY_FIX_DGNSS,          SKY_FIX_RTK_FLOAT,
+                                                       SKY_FIX_RTK_FIXED, SKY_FIX_TIME_ONLY};
 
 void add_position(sky_fix& told, const Fix& fix, const TruthState& truth) {
     told.lat_deg = fix.position.latitude.deg();
@@ -130,7 +113,7 @@ Answer<sky_fix> Session::fix(std::uint32_t receiver) const {
     if (report == nullptr) return told;
     const firmware::NavigationState& state = *report->state;
     const Fix& fix = state.epoch.fix;
-    told.type = fix_type_number(fix.type);
+    told.type = fix_type_numbers[static_cast<std::size_t>(fix.type)];
     told.ok = state.fix_ok ? 1 : 0;
     told.satellites_used = static_cast<std::uint8_t>(std::clamp(fix.satellites_used(), 0, 255));
     told.jamming_state = static_cast<std::uint8_t>(std::clamp(state.monitors.told_jamming_state(), 0, 3));

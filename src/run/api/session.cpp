@@ -17,18 +17,13 @@
 
 namespace skyloop::inline run {
 
-/// What the positions of a caller refer to.
+namespace {
+
+// What the positions of a caller refer to.
 struct TruthFrames {
-    const Geoid* geoid = nullptr;  ///< null: heights above sea level are not understood
+    const Geoid* geoid = nullptr;  // null: heights above sea level are not understood
     const LocalFrame* local = nullptr;
 };
-
-/// Its time is left to the caller. Fails with SKY_E_ARG for fields that contradict each other, SKY_E_UNSUPPORTED for
-/// ones that are not known, SKY_E_RANGE for numbers that are not finite or out of their bounds, SKY_E_STATE for a
-/// height above sea level without a geoid.
-Answer<TruthSample> truth_sample(const sky_truth& truth, const TruthFrames& frames);
-
-namespace {
 
 constexpr std::uint32_t positions = SKY_POS_ECEF | SKY_POS_LLA_ELLIPSOID | SKY_POS_LLA_MSL | SKY_POS_LOCAL_NED;
 constexpr std::uint32_t known_fields = positions | SKY_VEL | SKY_ACC | SKY_ATT | SKY_RATE | SKY_RESET;
@@ -106,8 +101,9 @@ Answer<void> check_motion(const sky_truth& t) {
     return check_below("rate_frd", turn_rate, "rad/s", LivePath::fastest_turn_radps);
 }
 
-}  // namespace
-
+// Its time is left to the caller. Fails with SKY_E_ARG for fields that contradict each other, SKY_E_UNSUPPORTED for
+// ones that are not known, SKY_E_RANGE for numbers that are not finite or out of their bounds, SKY_E_STATE for a height
+// above sea level without a geoid.
 Answer<TruthSample> truth_sample(const sky_truth& truth, const TruthFrames& frames) {
     if ((truth.fields & ~known_fields) != 0)
         return refuse(SKY_E_UNSUPPORTED, fmt::format("fields is {:#x}, of which {:#x} is not known to this version",
@@ -135,8 +131,6 @@ Answer<TruthSample> truth_sample(const sky_truth& truth, const TruthFrames& fram
     sample.attitude = *attitude;
     return sample;
 }
-
-namespace {
 
 constexpr Nanoseconds most_behind{2'000'000'000}, most_ahead{2'000'000'000};
 constexpr Nanoseconds longest_stretch{86'400'000'000'000};

@@ -99,9 +99,7 @@ ControlResponse queued(const Result<Command>& command, const ControlSources& sou
     if (const auto mistake = target_mistake(*command, sources)) return error_response(422, *mistake);
     const std::string told = command_json(with_given_name(*command, sources));
     if (sources.push && sources.push(*command)) return json_response("{\"accepted\":" + told + "}", 202);
-    ControlResponse response = error_response(429, "too many commands wait already; expected fewer a second");
-    response.headers.emplace_back("Retry-After", "1");
-    return response;
+    return error_response(429, "too many commands wait already; expected fewer a second", {{"Retry-After", "1"}});
 }
 
 // "%41" is "A"; nothing for what is no such text.
@@ -151,11 +149,8 @@ ControlResponse get_answer(const ControlRequest& request, const ControlSources& 
         return sources.scene != nullptr && !sources.scene->empty()
                    ? json_response(*sources.scene)
                    : error_response(404, "nothing stands around in this run: there is no scene");
-    if (path == "/api/stream") {
-        ControlResponse response = error_response(426, "a plain request; expected a WebSocket");
-        response.headers.emplace_back("Upgrade", "websocket");
-        return response;
-    }
+    if (path == "/api/stream")
+        return error_response(426, "a plain request; expected a WebSocket", {{"Upgrade", "websocket"}});
     if (!sources.snapshot) return error_response(503, "the run has not begun");
     if (path == "/api/timeline") return json_response(timeline_json(*sources.snapshot));
     return json_response(sources.status != nullptr ? *sources.status : recent_status_json(*sources.snapshot));
@@ -181,13 +176,11 @@ ControlResponse api_answer(const ControlRequest& request, const ControlSources& 
     if (methods.empty())
         return error_response(
             404, fmt::format("no path '{}'; GET /api/openapi.json lists them", request.path().substr(0, 200)));
-    if (!is_one_of(request.method, methods)) {
-        ControlResponse response =
-            error_response(405, fmt::format("{} is not for {}; expected {}", request.method.substr(0, 20),
-                                            request.path().substr(0, 200), methods));
-        response.headers.emplace_back("Allow", methods);
-        return response;
-    }
+    if (!is_one_of(request.method, methods))
+        return error_response(405,
+                              fmt::format("{} is not for {}; expected {}", request.method.substr(0, 20),
+                                          request.path().substr(0, 200), methods),
+                              {{"Allow", std::string(methods)}});
     if (request.method == "GET" || request.method == "HEAD") return get_answer(request, sources);
     if (request.method == "DELETE") return stop_fault(request, sources);
     if (auto wrong = wrong_content(request)) return std::move(*wrong);
@@ -213,11 +206,8 @@ ControlResponse answer(const ControlRequest& request, const AccessRules& rules, 
         return error_response(
             413, fmt::format("the body has {} bytes; expected at most {}", request.body.size(), control_body_limit));
     if (request.path().starts_with("/api/")) return api_answer(request, sources);
-    if (request.method != "GET" && request.method != "HEAD") {
-        ControlResponse response = error_response(405, "only GET is for the page");
-        response.headers.emplace_back("Allow", "GET, HEAD");
-        return response;
-    }
+    if (request.method != "GET" && request.method != "HEAD")
+        return error_response(405, "only GET is for the page", {{"Allow", "GET, HEAD"}});
     if (auto page = page_answer(request.path())) return std::move(*page);
     return error_response(404, fmt::format("no page '{}'; expected /", request.path().substr(0, 200)));
 }

@@ -22,13 +22,6 @@ constexpr std::size_t longest_json_text = 1000, longest_json_list = 10000;
 
 tl::unexpected<Error> json_mistake(std::string sentence) { return fail(ErrorCode::input, std::move(sentence)); }
 
-std::string printable(std::string_view text) {
-    std::string shown;
-    for (const char c : text.substr(0, 60))
-        shown += c >= ' ' && c != 0x7F ? c : '?';
-    return shown;
-}
-
 bool is_plain_text(const std::string& text) {
     return text.size() <= longest_json_text &&
            std::none_of(text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; });
@@ -76,7 +69,7 @@ Result<Json> parsed_object(std::string_view text) {
         Json value = Json::parse(
             text.begin(), text.end(),
             [&guard](int depth, Json::parse_event_t event, Json& parsed) { return guard(depth, event, parsed); });
-        if (guard.twice) return json_mistake(fmt::format("'{}' stands there twice", printable(*guard.twice)));
+        if (guard.twice) return json_mistake(fmt::format("'{}' stands there twice", shown_name(*guard.twice)));
         if (!value.is_object())
             return json_mistake(fmt::format("the body is a JSON {}; expected an object", value.type_name()));
         return value;
@@ -110,7 +103,7 @@ Result<ParameterMap> parameters_from_json(std::string_view text) {
             return json_mistake(
                 fmt::format("'{}' is a JSON {}; expected a number, true or false, a text of one line, or a list of "
                             "numbers or texts",
-                            printable(name), member.type_name()));
+                            shown_name(name), member.type_name()));
         values.emplace(name, std::move(*value));
     }
     return values;

@@ -55,10 +55,11 @@ std::optional<std::string_view> ControlRequest::query(std::string_view key) cons
     return std::nullopt;
 }
 
-ControlResponse error_response(int status, std::string_view sentence) {
+ControlResponse error_response(int status, std::string_view sentence, HeaderList headers) {
     ControlResponse response;
     response.status = status;
     response.body = json_text({{"error", sentence}});
+    response.headers = std::move(headers);
     return response;
 }
 
@@ -144,10 +145,8 @@ std::optional<ControlResponse> refusal(const ControlRequest& request, const Acce
                                                origin.value_or("several"), *host));
     if (rules.token.empty() || !request.path().starts_with("/api/") || shows_token(request, rules.token))
         return std::nullopt;
-    ControlResponse response =
-        error_response(401, "no token, or a wrong one; expected the header 'Authorization: Bearer TOKEN'");
-    response.headers.emplace_back("WWW-Authenticate", "Bearer");
-    return response;
+    return error_response(401, "no token, or a wrong one; expected the header 'Authorization: Bearer TOKEN'",
+                          {{"WWW-Authenticate", "Bearer"}});
 }
 
 }  // namespace skyloop::inline run

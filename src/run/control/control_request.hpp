@@ -44,11 +44,13 @@ struct ControlRequest {
     [[nodiscard]] std::optional<std::string_view> query(std::string_view key) const;
 };
 
+using HeaderList = std::vector<std::pair<std::string, std::string>>;
+
 struct ControlResponse {
     int status = 200;
     std::string content_type = "application/json";
     std::string body{};
-    std::vector<std::pair<std::string, std::string>> headers{};
+    HeaderList headers{};
 };
 
 /// Who may ask.
@@ -72,7 +74,7 @@ struct ControlSources {
 };
 
 /// {"error": "…"} with a status, in one line.
-ControlResponse error_response(int status, std::string_view sentence);
+ControlResponse error_response(int status, std::string_view sentence, HeaderList headers = {});
 
 /// Why a request is not answered, or nothing. The Host must be an address, "localhost" or the name that the server
 /// listens at, on loopback one of loopback, so that no foreign name leads here (DNS rebinding); off loopback any

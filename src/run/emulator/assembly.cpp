@@ -280,11 +280,6 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
     return Simulation({std::move(path), setup.navigation, std::move(*effects), std::move(fix_maker), city});
 }
 
-Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
-                                   const Geoid* geoid, GpsTime start, const DataFolders& data) {
-    return make_simulation(scenario, {std::move(navigation), geoid, start, data});
-}
-
 std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
     std::vector<std::filesystem::path> folders;
     for (const auto& folder : data.folders)

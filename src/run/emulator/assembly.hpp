@@ -129,9 +129,6 @@ struct SimulationSetup {
 /// The world of a scenario and its way to a fix. Receivers of one run share the world and its errors; what their own
 /// electronics add differs. Fails with `input` when scenario and world do not fit each other.
 Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSetup& setup);
-/// Of the first receiver.
-Result<Simulation> make_simulation(const Scenario& scenario, std::unique_ptr<NavigationSource> navigation,
-                                   const Geoid* geoid, GpsTime start, const DataFolders& data = {});
 
 /// What the user of a scenario should be told of the scenario alone. @param geoid null: the ellipsoid stands in for the
 /// sea

@@ -34,12 +34,6 @@ constexpr int most_rounds = 16;
 
 bool waits_for_client(const TimelineEntry& entry) { return entry.when && !entry.when->client_sends.empty(); }
 
-// Nobody stands by in virtual time who could wait for it.
-bool leads_time(const Command& command, const Pacer& pacer) {
-    const CommandKind* kind = find_command_kind(command_name(command.verb));
-    return kind != nullptr && kind->live_only && pacer.is_virtual();
-}
-
 // What a climb or a fall adds is none of it.
 MetresPerSecond ground_speed(const TruthState& truth) {
     const Eigen::Vector3d enu = LocalFrame(truth.geodetic).to_enu(truth.velocity).vector();
@@ -145,8 +139,9 @@ void Director::begin_fault(const TimelineEvent& event, Station& station) {
 }
 
 void Director::carry_out(const Command& command, std::string_view name, const Scene& scene) {
-    const std::string ignored =
-        leads_time(command, scene.pacer) ? "time is virtual, and waits for nobody" : ignored_because(command);
+    // Nobody stands by in virtual time who could wait for it.
+    const bool comes_to_nothing = is_live_only(command.verb) && scene.pacer.is_virtual();
+    const std::string ignored = comes_to_nothing ? "time is virtual, and waits for nobody" : ignored_because(command);
     const CommandSeen seen{scene.now, name, command, ignored};
     for (RunObserver* observer : observers_)
         observer->on_command(seen);

@@ -18,18 +18,11 @@ constexpr std::array<std::string_view, 3> clock_names{"realtime", "follow", "loc
 constexpr double longest_without_place_s = 5;
 
 Command plain_command(CommandVerb verb, std::string_view source = "feed") {
-    Command command;
-    command.verb = verb;
-    command.source = source;
-    return command;
+    return {verb, {}, {}, std::string(source)};
 }
 
 LivePathSettings path_settings(const LiveSettings& live) {
-    LivePathSettings settings;
-    settings.before = live.at.value_or(FixedSettings().at);
-    settings.begins_at_first = !live.at;
-    settings.delay = live.delay;
-    return settings;
+    return {.before = live.at.value_or(FixedSettings().at), .begins_at_first = !live.at, .delay = live.delay};
 }
 
 FeedSettings feed_settings(const LiveSettings& live, const Geoid* geoid) {

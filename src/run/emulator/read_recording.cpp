@@ -17,7 +17,9 @@
 
 namespace skyloop::inline run {
 
-/// The numbers of a line, one space between them; nothing when there are others than `Count` or anything else.
+namespace {
+
+// The numbers of a line, one space between them; nothing when there are others than `Count` or anything else.
 template <std::size_t Count>
 std::optional<std::array<std::int64_t, Count>> recorded_numbers(std::string_view line) {
     std::array<std::int64_t, Count> numbers{};
@@ -31,7 +33,19 @@ std::optional<std::array<std::int64_t, Count>> recorded_numbers(std::string_view
     return line.empty() ? std::optional(numbers) : std::nullopt;
 }
 
-namespace {
+// Calls `each` with the number of every whole line, from 1, and its numbers; ends at the first Error.
+// @return whether a run that was killed has left half a line behind
+template <std::size_t Count, class Each>
+Result<bool> read_number_lines(std::string_view text, const Each& each) {
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t end = text.find('\n');
+        if (end == std::string_view::npos) return true;
+        if (const Result<void> taken = each(number, recorded_numbers<Count>(text.substr(0, end))); !taken)
+            return fail(taken.error());
+        text.remove_prefix(end + 1);
+    }
+    return false;
+}
 
 constexpr std::size_t most_recorded_bytes = std::size_t{1} << 30;
 
@@ -75,20 +89,16 @@ Result<RecordedPort> read_port(const std::filesystem::path& folder, std::size_t 
 Result<RecordedPort> read_recorded_times(std::string_view times, Bytes bytes, std::string_view name) {
     RecordedPort port;
     port.bytes = std::move(bytes);
-    bool half_a_line = false;
-    for (std::size_t number = 1; !times.empty() && !half_a_line; ++number) {
-        const std::size_t end = times.find('\n');
-        half_a_line = end == std::string_view::npos;
-        if (half_a_line) break;
-        const auto line = recorded_numbers<4>(times.substr(0, end));
-        times.remove_prefix(end + 1);
+    const auto half_a_line = read_number_lines<4>(times, [&](std::size_t number, const auto& line) -> Result<void> {
         const std::string wrong =
             line ? wrong_with(*line, port) : "expected monotonic nanoseconds, GPS nanoseconds, offset and length";
         if (!wrong.empty()) return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, number, wrong));
         port.writes.push_back(
             {Nanoseconds((*line)[0]), static_cast<std::size_t>((*line)[2]), static_cast<std::size_t>((*line)[3])});
-    }
-    warn_of_the_end(port, half_a_line, name);
+        return {};
+    });
+    if (!half_a_line) return fail(half_a_line.error());
+    warn_of_the_end(port, *half_a_line, name);
     return port;
 }
 
@@ -143,18 +153,6 @@ Result<std::vector<RecordedPort>> part_of(std::vector<RecordedPort> ports, Nanos
 
 namespace {
 
-struct InputLine {
-    std::int64_t gps_ns = 0;
-    std::uint64_t offset = 0, length = 0;
-};
-
-std::optional<InputLine> read_line(std::string_view text) {
-    const auto numbers = recorded_numbers<3>(text);
-    if (!numbers || (*numbers)[1] < 0 || (*numbers)[2] < 0) return std::nullopt;
-    return InputLine{(*numbers)[0], static_cast<std::uint64_t>((*numbers)[1]),
-                     static_cast<std::uint64_t>((*numbers)[2])};
-}
-
 Result<void> add_port(const std::filesystem::path& folder, std::size_t wire, firmware::PortId port,
                       std::vector<HeardBytes>& all) {
     const std::filesystem::path times = folder / fmt::format("port{}.in_times", wire);
@@ -162,22 +160,17 @@ Result<void> add_port(const std::filesystem::path& folder, std::size_t wire, fir
     if (!text) return fail(text.error());
     const auto bytes = read_text_file(folder / fmt::format("port{}.in", wire), std::size_t{1} << 30);
     if (!bytes) return fail(bytes.error());
-    std::size_t number = 0;
-    for (std::size_t at = 0; at < text->size();) {
-        const std::size_t end = text->find('\n', at);
-        // A run that was killed may have left half a line behind.
-        if (end == std::string::npos) break;
-        const auto line = read_line(std::string_view(*text).substr(at, end - at));
-        at = end + 1;
-        ++number;
-        if (!line || line->offset > bytes->size() || line->length > bytes->size() - line->offset)
+    const auto read = read_number_lines<3>(*text, [&](std::size_t number, const auto& line) -> Result<void> {
+        const auto [gps_ns, offset, length] = line.value_or(std::array<std::int64_t, 3>{0, -1, -1});
+        const auto size = static_cast<std::int64_t>(bytes->size());
+        if (offset < 0 || length < 0 || offset > size || length > size - offset)
             return fail(ErrorCode::input, fmt::format("{}:{}: expected nanoseconds, offset and length of bytes of {}",
                                                       times.string(), number, fmt::format("port{}.in", wire)));
-        const auto from = bytes->begin() + static_cast<std::ptrdiff_t>(line->offset);
-        all.push_back({GpsTime(Nanoseconds(line->gps_ns)), wire, port,
-                       Bytes(from, from + static_cast<std::ptrdiff_t>(line->length))});
-    }
-    return {};
+        const auto from = bytes->begin() + offset;
+        all.push_back({GpsTime(Nanoseconds(gps_ns)), wire, port, Bytes(from, from + length)});
+        return {};
+    });
+    return read ? Result<void>() : fail(read.error());
 }
 
 }  // namespace

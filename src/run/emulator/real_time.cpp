@@ -49,15 +49,8 @@ std::thread background_thread(std::function<void()> work) {
 }
 
 std::string_view to_string(ThreadPriority priority) {
-    switch (priority) {
-        case ThreadPriority::realtime:
-            return "real-time";
-        case ThreadPriority::raised:
-            return "raised";
-        case ThreadPriority::normal:
-            break;
-    }
-    return "normal";
+    constexpr std::array<std::string_view, 3> names{"real-time", "raised", "normal"};
+    return names[static_cast<std::size_t>(priority)];
 }
 
 namespace {

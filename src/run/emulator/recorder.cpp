@@ -47,31 +47,25 @@ Result<void> Recorder::begin(const Beginning& beginning) {
 }
 
 Result<void> Recorder::create_tables() {
-    const std::pair<OutputFile*, const char*> files[] = {{&fixes_, "fixes.csv"}, {&satellites_, "satellites.csv"}};
-    for (const auto& [file, name] : files) {
-        auto created = OutputFile::create(folder() / name);
-        if (!created) return fail(created.error());
-        *file = std::move(*created);
-    }
+    const auto created = create_files(folder(), {{&fixes_, "fixes.csv"}, {&satellites_, "satellites.csv"}});
+    if (!created) return created;
     fixes_.write(fixes_header);
     satellites_.write(satellites_header);
     return {};
 }
 
-std::filesystem::path Recorder::port_file(std::size_t wire, std::string_view extension) const {
-    return folder() / fmt::format("port{}.{}", wire, extension);
+std::string Recorder::port_file(std::size_t wire, std::string_view extension) {
+    return fmt::format("port{}.{}", wire, extension);
 }
 
 Result<void> Recorder::create_ports(std::size_t wires) {
     for (std::size_t wire = 0; wire < wires; ++wire) {
         PortFiles port;
-        const std::pair<OutputFile*, const char*> files[] = {
-            {&port.out, "out"}, {&port.in, "in"}, {&port.times, "times"}, {&port.in_times, "in_times"}};
-        for (const auto& [file, extension] : files) {
-            auto created = OutputFile::create(port_file(wire, extension));
-            if (!created) return fail(created.error());
-            *file = std::move(*created);
-        }
+        const auto created = create_files(folder(), {{&port.out, port_file(wire, "out")},
+                                                     {&port.in, port_file(wire, "in")},
+                                                     {&port.times, port_file(wire, "times")},
+                                                     {&port.in_times, port_file(wire, "in_times")}});
+        if (!created) return created;
         ports_.push_back(std::move(port));
     }
     return {};
@@ -79,9 +73,9 @@ Result<void> Recorder::create_ports(std::size_t wires) {
 
 void Recorder::remove_ports_from(std::size_t wire) {
     std::error_code reason;
-    for (; std::filesystem::remove(port_file(wire, "out"), reason); ++wire)
+    for (; std::filesystem::remove(folder() / port_file(wire, "out"), reason); ++wire)
         for (const char* extension : {"in", "times", "in_times"})
-            std::filesystem::remove(port_file(wire, extension), reason);
+            std::filesystem::remove(folder() / port_file(wire, extension), reason);
 }
 
 void Recorder::record(const Trace& trace, const NavigationSource& broadcast) {

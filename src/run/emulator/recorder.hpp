@@ -60,7 +60,7 @@ private:
     };
     Recorder();
     Result<void> create_tables();
-    [[nodiscard]] std::filesystem::path port_file(std::size_t wire, std::string_view extension) const;
+    static std::string port_file(std::size_t wire, std::string_view extension);
     Result<void> create_ports(std::size_t wires);
     void remove_ports_from(std::size_t wire);  // of a former run with more wires
 

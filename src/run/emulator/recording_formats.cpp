@@ -191,12 +191,9 @@ KeplerEphemeris ephemeris_of_almanac(const KeplerEphemeris& almanac, GpsTime tim
 
 Result<RinexRecording> RinexRecording::create(const std::filesystem::path& folder, const RinexRecordingSetup& setup) {
     RinexRecording recording(setup);
-    for (const auto& [file, name] : {std::pair{&recording.observations_, "observations.rnx"},
-                                     std::pair{&recording.navigation_, "navigation.rnx"}}) {
-        auto created = OutputFile::create(folder / name);
-        if (!created) return fail(created.error());
-        *file = std::move(*created);
-    }
+    const auto created = create_files(
+        folder, {{&recording.observations_, "observations.rnx"}, {&recording.navigation_, "navigation.rnx"}});
+    if (!created) return fail(created.error());
     recording.observations_.write(recording.writer_.header());
     recording.navigation_.write(navigation_header_text(setup.navigation));
     return recording;

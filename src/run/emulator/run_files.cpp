@@ -99,6 +99,16 @@ void OutputFile::flush() {
     buffer_.clear();
 }
 
+Result<void> create_files(const std::filesystem::path& folder,
+                          std::initializer_list<std::pair<OutputFile*, std::string>> files) {
+    for (const auto& [file, name] : files) {
+        auto created = OutputFile::create(folder / name);
+        if (!created) return fail(created.error());
+        *file = std::move(*created);
+    }
+    return {};
+}
+
 namespace {
 
 constexpr std::size_t largest_state = std::size_t{1} << 20;

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/core/bytes.hpp"
 #include "base/core/file_descriptor.hpp"
@@ -58,6 +60,10 @@ private:
     std::string buffer_;
     std::optional<Error> failure_;
 };
+
+/// Creates these files in a folder, as far as it can. Fails as OutputFile::create().
+Result<void> create_files(const std::filesystem::path& folder,
+                          std::initializer_list<std::pair<OutputFile*, std::string>> files);
 
 /// A file that is replaced in one step, so that one who reads it never finds half of it. The text is the receiver's
 /// own; this class does not look into it.

@@ -135,11 +135,6 @@ bool has_pair(const FaultEntry& fault, const Scenario& scenario) {
                        [&](std::size_t receiver) { return scenario.receivers.at(receiver).base.has_value(); });
 }
 
-bool is_live_only(const Command& command) {
-    const CommandKind* kind = find_command_kind(command_name(command.verb));
-    return kind != nullptr && kind->live_only;
-}
-
 // Why nothing will be seen of a fault; empty: something will.
 std::string why_idle(const FaultEntry& fault, const RunOfFaults& run) {
     const ModelSettings& model = run.scenario.model;
@@ -164,7 +159,7 @@ std::vector<std::string> idle_fault_warnings(const Scenario& scenario, const Nav
         if (const std::string why = why_idle(fault, {scenario, navigation, stations, virtual_time}); !why.empty())
             warnings.push_back(fmt::format("[[fault]] '{}' will show nothing: {}", fault.when.name, why));
     for (const CommandEntry& command : scenario.commands)
-        if (virtual_time && command.command.source == "scenario" && is_live_only(command.command))
+        if (virtual_time && command.command.source == "scenario" && is_live_only(command.command.verb))
             warnings.push_back(
                 fmt::format("[[command]] '{}' will do nothing: skyloop run does it, against the clock; in virtual time "
                             "nothing does",

@@ -234,25 +234,14 @@ void Station::report(const Trace& trace, Nanoseconds lateness, bool safe) {
     follow_settings(trace.truth.time);
 }
 
-std::set<PortId> Station::wired_ports() const {
+std::uint64_t Station::total(std::uint64_t firmware::PortTotals::*of) const {
     std::set<PortId> ports;
     for (const Wire& wire : parts_.wires)
         ports.insert(wire.port);
     if (ports.empty()) ports.insert(default_port(parts_.receiver.board()));
-    return ports;
-}
-
-std::uint64_t Station::messages_sent() const {
     std::uint64_t count = 0;
-    for (const PortId port : wired_ports())
-        count += parts_.receiver.port_totals(port).messages_out;
-    return count;
-}
-
-std::uint64_t Station::messages_dropped() const {
-    std::uint64_t count = 0;
-    for (const PortId port : wired_ports())
-        count += parts_.receiver.port_totals(port).messages_dropped;
+    for (const PortId port : ports)
+        count += parts_.receiver.port_totals(port).*of;
     return count;
 }
 

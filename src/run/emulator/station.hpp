@@ -117,9 +117,9 @@ public:
     [[nodiscard]] const std::vector<Wire>& wires() const { return parts_.wires; }
     [[nodiscard]] Transport& transport(std::size_t wire) { return parts_.wires.at(wire).link.transport(); }
     /// Messages on the ports that have a wire; without any wire on the port of an unnamed one.
-    [[nodiscard]] std::uint64_t messages_sent() const;
+    [[nodiscard]] std::uint64_t messages_sent() const { return total(&firmware::PortTotals::messages_out); }
     /// Those among them that did not fit into the transmit buffer.
-    [[nodiscard]] std::uint64_t messages_dropped() const;
+    [[nodiscard]] std::uint64_t messages_dropped() const { return total(&firmware::PortTotals::messages_dropped); }
     [[nodiscard]] const Simulation& simulation() const { return parts_.simulation; }
     [[nodiscard]] const Recorder* recorder() const { return parts_.recorder ? &*parts_.recorder : nullptr; }
     [[nodiscard]] Recorder* recorder() { return parts_.recorder ? &*parts_.recorder : nullptr; }
@@ -130,7 +130,7 @@ public:
     [[nodiscard]] const RunCounts& counts() const { return counts_; }
 
 private:
-    [[nodiscard]] std::set<firmware::PortId> wired_ports() const;
+    [[nodiscard]] std::uint64_t total(std::uint64_t firmware::PortTotals::*of) const;
     bool hear(std::size_t wire, GpsTime now, Dialogue* dialogue);
     bool hand_over(std::size_t wire, const Bytes& heard, GpsTime now, Dialogue* dialogue);
     void input(firmware::PortId port, ByteSpan bytes, GpsTime now);

@@ -98,6 +98,19 @@ std::string_view command_name(CommandVerb verb) {
     return "";
 }
 
+bool is_live_only(CommandVerb verb) {
+    const CommandKind* kind = find_command_kind(command_name(verb));
+    return kind != nullptr && kind->live_only;
+}
+
+std::string shown_name(std::string_view text) {
+    constexpr std::size_t longest = 60;
+    std::string shown;
+    for (const char c : text.substr(0, longest))
+        shown += c >= ' ' && c != 0x7F ? c : '?';
+    return shown;
+}
+
 VehicleState vehicle_state_of(const Parameters& parameters, VehicleState before) {
     VehicleState vehicle = std::move(before);
     if (parameters.has("mode")) vehicle.mode = parameters.text("mode");
@@ -108,14 +121,10 @@ VehicleState vehicle_state_of(const Parameters& parameters, VehicleState before)
 }
 
 Command vehicle_state_command(const VehicleState& vehicle, std::string_view source) {
-    std::map<std::string, ParameterValue, std::less<>> values{{"mode", vehicle.mode}};
+    ParameterMap values{{"mode", vehicle.mode}};
     if (vehicle.custom_mode) values["custom_mode"] = static_cast<double>(*vehicle.custom_mode);
     if (vehicle.armed) values["armed"] = *vehicle.armed;
-    Command command;
-    command.verb = CommandVerb::vehicle_state;
-    command.parameters = Parameters(std::move(values));
-    command.source = source;
-    return command;
+    return {CommandVerb::vehicle_state, Parameters(std::move(values)), {}, std::string(source)};
 }
 
 std::optional<std::string> place_mistake(const Command& command) {
@@ -126,15 +135,6 @@ std::optional<std::string> place_mistake(const Command& command) {
 }
 
 namespace {
-
-// Any bytes as a piece of one line.
-std::string shown_name(std::string_view text) {
-    constexpr std::size_t longest = 60;
-    std::string shown;
-    for (const char c : text.substr(0, longest))
-        shown += c >= ' ' && c != 0x7F ? c : '?';
-    return shown;
-}
 
 template <class Kind>
 std::string not_a_kind(std::string_view what, std::string_view name, std::span<const Kind> kinds) {

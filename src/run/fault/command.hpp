@@ -62,14 +62,16 @@ std::span<const CommandKind> command_kinds();
 const CommandKind* find_command_kind(std::string_view name);
 /// "move_to"
 std::string_view command_name(CommandVerb verb);
+/// Nothing comes of it in virtual time.
+bool is_live_only(CommandVerb verb);
+/// The first bytes of any name, for a message of one line: what does not print is a question mark.
+std::string shown_name(std::string_view text);
 /// The state that a command vehicle_state tells. @param before it; what the command does not name stays
 VehicleState vehicle_state_of(const Parameters& parameters, VehicleState before = {});
 /// The command that tells a state. @param source of it
 Command vehicle_state_command(const VehicleState& vehicle, std::string_view source);
 /// What is wrong with the place, `at`, to which a command moves the vehicle; nothing of others.
 std::optional<std::string> place_mistake(const Command& command);
-
-using ParameterMap = std::map<std::string, ParameterValue, std::less<>>;
 
 /// The command of command_kinds() that the member "command" names, with the other members as its parameters and
 /// "receiver" for which it is. A start_fault with a "kind" is one of checked_live_fault(). Fails with `input`: one line

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
+
 #include "run/fault/command.hpp"
 #include "run/fault/timeline_keys.hpp"
 
@@ -56,19 +58,10 @@ std::string parameter_table(std::span<const ParameterSpec> specs) {
     return table + "\n";
 }
 
-std::string layer_heading(FaultLayer layer) {
-    switch (layer) {
-        case FaultLayer::signals:
-            return "## Signals: what reaches the antenna\n\n";
-        case FaultLayer::solution:
-            return "## Solution: what the receiver believes or reports\n\n";
-        case FaultLayer::receiver:
-            return "## Receiver: how it behaves\n\n";
-        case FaultLayer::wire:
-            return "## Wire: what becomes of the bytes\n\n";
-    }
-    return "";
-}
+// In the order of FaultLayer.
+constexpr std::array<std::string_view, 4> layer_headings{"Signals: what reaches the antenna",
+                                                         "Solution: what the receiver believes or reports",
+                                                         "Receiver: how it behaves", "Wire: what becomes of the bytes"};
 
 // What the kind cannot do.
 std::string bounds_of(const FaultKind& kind, std::string_view modern) {
@@ -80,7 +73,8 @@ std::string kinds_markdown() {
     std::string page;
     const FaultKind* before = nullptr;
     for (const FaultKind& kind : fault_kinds()) {
-        if (before == nullptr || before->layer != kind.layer) page += layer_heading(kind.layer);
+        if (before == nullptr || before->layer != kind.layer)
+            page += fmt::format("## {}\n\n", layer_headings[static_cast<std::size_t>(kind.layer)]);
         before = &kind;
         page += fmt::format("### {}\n\n{}{} In the world: {}\n\n{}", kind.name, kind.effect,
                             bounds_of(kind, "`modern`"), kind.cause, parameter_table(kind.parameters));

@@ -103,9 +103,15 @@ Accepted accept_numbers(const ParameterSpec& spec, const ParameterValue& value) 
 }
 
 template <class Value>
-const Value* find_value(const std::map<std::string, ParameterValue, std::less<>>& values, std::string_view name) {
+const Value* find_value(const ParameterMap& values, std::string_view name) {
     const auto found_value = values.find(name);
     return found_value == values.end() ? nullptr : std::get_if<Value>(&found_value->second);
+}
+
+template <class Value>
+Value value_or_nothing(const ParameterMap& values, std::string_view name) {
+    const auto* value = find_value<Value>(values, name);
+    return value == nullptr ? Value() : *value;
 }
 
 std::vector<std::string_view> names_of(std::span<const ParameterSpec> specs) {
@@ -131,24 +137,16 @@ std::optional<double> Parameters::optional_number(std::string_view name) const {
     return value == nullptr ? std::nullopt : std::optional(*value);
 }
 
-bool Parameters::flag(std::string_view name) const {
-    const auto* value = find_value<bool>(values_, name);
-    return value != nullptr && *value;
-}
+bool Parameters::flag(std::string_view name) const { return value_or_nothing<bool>(values_, name); }
 
-std::string Parameters::text(std::string_view name) const {
-    const auto* value = find_value<std::string>(values_, name);
-    return value == nullptr ? std::string() : *value;
-}
+std::string Parameters::text(std::string_view name) const { return value_or_nothing<std::string>(values_, name); }
 
 std::vector<std::string> Parameters::texts(std::string_view name) const {
-    const auto* value = find_value<std::vector<std::string>>(values_, name);
-    return value == nullptr ? std::vector<std::string>() : *value;
+    return value_or_nothing<std::vector<std::string>>(values_, name);
 }
 
 std::vector<double> Parameters::numbers(std::string_view name) const {
-    const auto* value = find_value<std::vector<double>>(values_, name);
-    return value == nullptr ? std::vector<double>() : *value;
+    return value_or_nothing<std::vector<double>>(values_, name);
 }
 
 std::optional<Geodetic> Parameters::place(std::string_view name, Metres height) const {
@@ -180,10 +178,9 @@ tl::expected<ParameterValue, ParameterMistake> accept(const ParameterSpec& spec,
     return value;
 }
 
-CheckedParameters check_parameters(std::span<const ParameterSpec> specs,
-                                   const std::map<std::string, ParameterValue, std::less<>>& given) {
+CheckedParameters check_parameters(std::span<const ParameterSpec> specs, const ParameterMap& given) {
     CheckedParameters checked;
-    std::map<std::string, ParameterValue, std::less<>> values;
+    ParameterMap values;
     for (const ParameterSpec& spec : specs) {
         const auto value = given.find(spec.name);
         const std::string name(spec.name);

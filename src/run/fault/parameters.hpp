@@ -20,6 +20,9 @@ namespace skyloop::inline run {
 /// A value as scenario files, control messages and the command line give it.
 using ParameterValue = std::variant<double, bool, std::string, std::vector<double>, std::vector<std::string>>;
 
+/// Values by name.
+using ParameterMap = std::map<std::string, ParameterValue, std::less<>>;
+
 /// What kind of value a parameter takes.
 enum class ParameterType {
     number,
@@ -149,7 +152,7 @@ private:
 class Parameters {
 public:
     Parameters() = default;
-    explicit Parameters(std::map<std::string, ParameterValue, std::less<>> values) : values_(std::move(values)) {}
+    explicit Parameters(ParameterMap values) : values_(std::move(values)) {}
 
     [[nodiscard]] bool has(std::string_view name) const { return values_.contains(name); }
     [[nodiscard]] double number(std::string_view name) const;
@@ -163,10 +166,10 @@ public:
     [[nodiscard]] std::vector<double> numbers(std::string_view name) const;
     /// @param height of a place that was given without one
     [[nodiscard]] std::optional<Geodetic> place(std::string_view name, Metres height) const;
-    [[nodiscard]] const std::map<std::string, ParameterValue, std::less<>>& values() const { return values_; }
+    [[nodiscard]] const ParameterMap& values() const { return values_; }
 
 private:
-    std::map<std::string, ParameterValue, std::less<>> values_;
+    ParameterMap values_;
 };
 
 /// What is wrong with one parameter.
@@ -184,7 +187,6 @@ struct CheckedParameters {
     Parameters parameters;
     std::vector<ParameterMistake> mistakes;  ///< all of them; unknown names suggest the nearest known one
 };
-CheckedParameters check_parameters(std::span<const ParameterSpec> specs,
-                                   const std::map<std::string, ParameterValue, std::less<>>& given);
+CheckedParameters check_parameters(std::span<const ParameterSpec> specs, const ParameterMap& given);
 
 }  // namespace skyloop::inline run

@@ -25,18 +25,6 @@
 
 namespace skyloop::inline run {
 
-/// The message of a name, in letters of any case: "MON-VER", "CFG-VALSET", "GGA", "PUBX,41", "RTCM-1005", or
-/// "UBX-0F-01" by class and id. Sentences have the ids of u-blox (classes F0, F1). Fails with `usage`; the nearest name
-/// is suggested.
-Result<UbxMessageId> find_message(std::string_view name);
-
-/// The messages that a list of names means. Fails with `usage` when it is empty, or a name is not known.
-Result<std::set<UbxMessageId>> read_messages(const Parameters& parameters, std::string_view parameter);
-
-/// The ids of configuration items that a list of names means: "CFG-RATE-MEAS", in letters of any case. Fails as
-/// read_messages().
-Result<std::set<std::uint32_t>> read_items(const Parameters& parameters, std::string_view parameter);
-
 namespace {
 
 using firmware::NamedMessage;
@@ -75,8 +63,9 @@ Error nothing_named(std::string_view parameter, std::string_view expected) {
     return {ErrorCode::usage, fmt::format("{} names nothing; expected {}", parameter, expected)};
 }
 
-}  // namespace
-
+// The message of a name, in letters of any case: "MON-VER", "CFG-VALSET", "GGA", "PUBX,41", "RTCM-1005", or "UBX-0F-01"
+// by class and id. Sentences have the ids of u-blox (classes F0, F1). Fails with `usage`; the nearest name is
+// suggested.
 Result<UbxMessageId> find_message(std::string_view name) {
     std::string wanted = upper_case(name);
     if (const auto id = message_by_number(wanted)) return *id;
@@ -91,6 +80,7 @@ Result<UbxMessageId> find_message(std::string_view name) {
                                               name, did_you_mean(wanted, known)));
 }
 
+// The messages that a list of names means. Fails with `usage` when it is empty, or a name is not known.
 Result<std::set<UbxMessageId>> read_messages(const Parameters& parameters, std::string_view parameter) {
     std::set<UbxMessageId> messages;
     for (const std::string& name : parameters.texts(parameter)) {
@@ -102,6 +92,8 @@ Result<std::set<UbxMessageId>> read_messages(const Parameters& parameters, std::
     return messages;
 }
 
+// The ids of configuration items that a list of names means: "CFG-RATE-MEAS", in letters of any case. Fails as
+// read_messages().
 Result<std::set<std::uint32_t>> read_items(const Parameters& parameters, std::string_view parameter) {
     std::set<std::uint32_t> items;
     for (const std::string& name : parameters.texts(parameter)) {
@@ -120,8 +112,6 @@ Result<std::set<std::uint32_t>> read_items(const Parameters& parameters, std::st
     if (items.empty()) return fail(nothing_named(parameter, "at least one configuration item"));
     return items;
 }
-
-namespace {
 
 using firmware::FirmwareFaults;
 

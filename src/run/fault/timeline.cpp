@@ -55,12 +55,12 @@ bool is_inside(const Geodetic& place, const std::vector<std::array<double, 2>>& 
     return inside;
 }
 
-}  // namespace
-
-bool Timeline::Planned::operator<(const Planned& other) const {
+bool comes_before(const TimelineEvent& one, const TimelineEvent& other) {
     const auto key = [](const TimelineEvent& e) { return std::tuple(e.time, e.begins, e.entry, e.occurrence); };
-    return key(event) < key(other.event);
+    return key(one) < key(other);
 }
+
+}  // namespace
 
 Timeline::Timeline(std::vector<TimelineEntry> entries, GpsTime start, std::uint64_t seed)
     : entries_(std::move(entries)), seed_(seed), states_(entries_.size()) {
@@ -79,12 +79,7 @@ void Timeline::plan_from(std::size_t index, GpsTime origin) {
 
 // Which occurrence it is, is known when it begins: others may come in between.
 void Timeline::plan(std::size_t index, GpsTime begin, bool by_hand, std::optional<Seconds> length) {
-    TimelineEvent event;
-    event.entry = index;
-    event.occurrence = 0;
-    event.time = begin;
-    event.by_hand = by_hand;
-    event.length = length;
+    TimelineEvent event{index, 0, true, begin, by_hand, length};
     if (!by_hand) ++states_[index].drawn;
     // What an epoch has shown acts behind it: as long as told, and on as many epochs as if it had been known before.
     const bool shown = entries_[index].when && !by_hand;
@@ -93,8 +88,7 @@ void Timeline::plan(std::size_t index, GpsTime begin, bool by_hand, std::optiona
 }
 
 void Timeline::insert(const TimelineEvent& event) {
-    const Planned planned{event};
-    planned_.insert(std::upper_bound(planned_.begin(), planned_.end(), planned), planned);
+    planned_.insert(std::upper_bound(planned_.begin(), planned_.end(), event, comes_before), event);
 }
 
 std::optional<Seconds> Timeline::length_of(const TimelineEvent& event) const {
@@ -133,8 +127,8 @@ void Timeline::follow(const TimelineEvent& event) {
 
 std::vector<TimelineEvent> Timeline::advance(GpsTime now) {
     std::vector<TimelineEvent> due;
-    while (!planned_.empty() && planned_.front().event.time <= now) {
-        TimelineEvent event = planned_.front().event;
+    while (!planned_.empty() && planned_.front().time <= now) {
+        TimelineEvent event = planned_.front();
         planned_.erase(planned_.begin());
         // A fault works once at a time: twice the same step would be another one. It ends, and begins anew.
         if (event.begins && is_under_way(event.entry)) {
@@ -153,7 +147,7 @@ std::vector<TimelineEvent> Timeline::advance(GpsTime now) {
 
 std::optional<GpsTime> Timeline::next_event() const {
     if (planned_.empty()) return std::nullopt;
-    return planned_.front().event.time;
+    return planned_.front().time;
 }
 
 std::size_t Timeline::add(TimelineEntry entry) {
@@ -170,28 +164,19 @@ bool Timeline::begin(std::size_t index, GpsTime now, std::optional<Seconds> leng
 }
 
 bool Timeline::can_end(std::size_t index) const {
-    return is_under_way(index) || std::any_of(planned_.begin(), planned_.end(), [&](const Planned& planned) {
-               return planned.event.entry == index && planned.event.begins && planned.event.by_hand;
+    return is_under_way(index) || std::any_of(planned_.begin(), planned_.end(), [&](const TimelineEvent& event) {
+               return event.entry == index && event.begins && event.by_hand;
            });
 }
 
 bool Timeline::end(std::size_t index, GpsTime now) {
     if (!can_end(index)) return false;
-    std::erase_if(planned_, [&](const Planned& planned) {
-        return planned.event.entry == index && planned.event.begins && planned.event.by_hand;
+    std::erase_if(planned_, [&](const TimelineEvent& event) {
+        return event.entry == index &&
+               (event.begins ? event.by_hand : states_[index].under_way.contains(event.occurrence));
     });
-    std::erase_if(planned_, [&](const Planned& planned) {
-        return planned.event.entry == index && !planned.event.begins &&
-               states_[index].under_way.contains(planned.event.occurrence);
-    });
-    for (const int occurrence : states_[index].under_way) {
-        TimelineEvent event;
-        event.entry = index;
-        event.occurrence = occurrence;
-        event.begins = false;
-        event.time = now;
-        insert(event);
-    }
+    for (const int occurrence : states_[index].under_way)
+        insert({index, occurrence, false, now});
     return true;
 }
 

@@ -122,10 +122,6 @@ public:
     [[nodiscard]] const std::vector<TimelineEntry>& entries() const { return entries_; }
 
 private:
-    struct Planned {
-        TimelineEvent event;
-        bool operator<(const Planned& other) const;
-    };
     struct EntryState {
         int drawn = 0;  // beginnings that were planned, by which their times are drawn
         int begun = 0;  // occurrences that have begun, whoever asked for them
@@ -146,8 +142,8 @@ private:
 
     std::vector<TimelineEntry> entries_;
     std::uint64_t seed_;
-    std::vector<Planned> planned_;    // ascending
-    std::vector<EntryState> states_;  // of each entry
+    std::vector<TimelineEvent> planned_;  // ascending
+    std::vector<EntryState> states_;      // of each entry
     TriggerView last_view_;
     std::optional<GpsTime> looked_;
     VehicleState vehicle_;

@@ -17,7 +17,7 @@ double up_error_at_noon(const std::string& correction) {
     const Scenario scenario = test::emulator_scenario(text);
     const GpsTime start = scenario.run.start.value();
     auto simulation =
-        make_simulation(scenario, std::make_unique<NominalConstellation>(), nullptr, start, test::emulator_data());
+        make_simulation(scenario, {std::make_unique<NominalConstellation>(), nullptr, start, test::emulator_data()});
     if (!simulation) throw std::runtime_error(simulation.error().message);
     ReceiverSettings settings;
     settings.signals = {{Constellation::gps, Signal::l1}};

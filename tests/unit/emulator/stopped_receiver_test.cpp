@@ -10,7 +10,8 @@ using test::emulator_scenario;
 
 Simulation simulation_of(const std::string& text) {
     const Scenario scenario = emulator_scenario("[run]\nstart = 2024-03-05T12:00:00Z\n" + text);
-    auto simulation = make_simulation(scenario, std::make_unique<NominalConstellation>(), nullptr, *scenario.run.start);
+    auto simulation =
+        make_simulation(scenario, {std::make_unique<NominalConstellation>(), nullptr, *scenario.run.start});
     EXPECT_TRUE(simulation);
     return std::move(*simulation);
 }
