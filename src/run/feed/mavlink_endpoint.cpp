@@ -27,26 +27,11 @@ constexpr auto heartbeat_period = 1s, peer_memory = 10s;
 constexpr auto flood_pause = 10ms;
 constexpr int patience_ms = 50;  // of one wait: how late a stop, a heartbeat or a held state may be
 
-}  // namespace
-
-Result<MavlinkAddress> parse_mavlink_address(std::string_view text) {
-    const bool speaks_first = text.starts_with("udpout:");
-    const std::string_view rest = text.substr(text.find(':') + 1);
-    const bool known = (speaks_first || text.starts_with("udp:")) && (!speaks_first || rest.find(':') != rest.npos);
-    const auto where = parse_tcp_address(rest);
-    if (!known || !where || (speaks_first && where->port == 0))
-        return fail(ErrorCode::usage,
-                    fmt::format("'{}' is no MAVLink address; expected udp:[HOST:]PORT or udpout:HOST:PORT", text));
-    return MavlinkAddress{speaks_first, where->host, where->port};
-}
-
-class MavlinkEndpoint::Impl {
+class UdpEndpoint final : public MavlinkEndpoint {
 public:
-    Impl(MavlinkAddress address, MavlinkParts parts)
+    UdpEndpoint(MavlinkAddress address, MavlinkParts parts)
         : address_(std::move(address)), component_(std::move(parts.receivers), parts.push) {}
-    Impl(const Impl&) = delete;
-    Impl& operator=(const Impl&) = delete;
-    ~Impl() {
+    ~UdpEndpoint() override {
         stop_ = true;
         if (thread_.joinable()) thread_.join();
     }
@@ -65,8 +50,8 @@ public:
         thread_ = thread ? thread(work) : std::thread(work);
     }
 
-    [[nodiscard]] std::uint16_t port() const { return port_; }
-    [[nodiscard]] std::string description() const {
+    [[nodiscard]] std::uint16_t port() const override { return port_; }
+    [[nodiscard]] std::string description() const override {
         const TcpAddress shown{address_.host, address_.speaks_first ? address_.port : port_};
         return fmt::format("{}:{} (system {}, component {})", address_.speaks_first ? "udpout" : "udp",
                            shown_address(shown), mavlink_own_system, mavlink_own_component);
@@ -161,19 +146,25 @@ private:
     std::thread thread_;
 };
 
-MavlinkEndpoint::MavlinkEndpoint(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-MavlinkEndpoint::~MavlinkEndpoint() = default;
+}  // namespace
+
+Result<MavlinkAddress> parse_mavlink_address(std::string_view text) {
+    const bool speaks_first = text.starts_with("udpout:");
+    const std::string_view rest = text.substr(text.find(':') + 1);
+    const bool known = (speaks_first || text.starts_with("udp:")) && (!speaks_first || rest.find(':') != rest.npos);
+    const auto where = parse_tcp_address(rest);
+    if (!known || !where || (speaks_first && where->port == 0))
+        return fail(ErrorCode::usage,
+                    fmt::format("'{}' is no MAVLink address; expected udp:[HOST:]PORT or udpout:HOST:PORT", text));
+    return MavlinkAddress{speaks_first, where->host, where->port};
+}
 
 Result<std::unique_ptr<MavlinkEndpoint>> MavlinkEndpoint::start(const MavlinkAddress& address, MavlinkParts parts) {
     const auto thread = std::move(parts.thread);
-    auto impl = std::make_unique<Impl>(address, std::move(parts));
-    if (const auto opened = impl->open(); !opened) return fail(opened.error());
-    impl->start(thread);
-    return std::unique_ptr<MavlinkEndpoint>(new MavlinkEndpoint(std::move(impl)));
+    auto endpoint = std::make_unique<UdpEndpoint>(address, std::move(parts));
+    if (const auto opened = endpoint->open(); !opened) return fail(opened.error());
+    endpoint->start(thread);
+    return endpoint;
 }
-
-std::uint16_t MavlinkEndpoint::port() const { return impl_->port(); }
-
-std::string MavlinkEndpoint::description() const { return impl_->description(); }
 
 }  // namespace skyloop::inline run

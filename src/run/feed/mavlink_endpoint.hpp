@@ -42,19 +42,12 @@ class MavlinkEndpoint {
 public:
     /// Listens when it returns. Fails with `outside` when the address cannot be used.
     static Result<std::unique_ptr<MavlinkEndpoint>> start(const MavlinkAddress& address, MavlinkParts parts);
-    ~MavlinkEndpoint();
-    MavlinkEndpoint(const MavlinkEndpoint&) = delete;
-    MavlinkEndpoint& operator=(const MavlinkEndpoint&) = delete;
+    virtual ~MavlinkEndpoint() = default;
 
     /// Own port, as the system gave it.
-    [[nodiscard]] std::uint16_t port() const;
+    [[nodiscard]] virtual std::uint16_t port() const = 0;
     /// "udp:127.0.0.1:14550 (system 245, component 191)"
-    [[nodiscard]] std::string description() const;
-
-private:
-    class Impl;
-    explicit MavlinkEndpoint(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    [[nodiscard]] virtual std::string description() const = 0;
 };
 
 }  // namespace skyloop::inline run

@@ -24,6 +24,8 @@
 
 namespace skyloop::inline run {
 
+namespace {
+
 /// Waits for a source, lets it be heard, hands over what it says and answers it.
 class FeedWorker {
 public:
@@ -58,15 +60,11 @@ private:
     std::thread thread_;
 };
 
-namespace {
-
 FeedContext told_of_wire(FeedContext context, FeedWire wire) {
     context.datagrams = wire == FeedWire::udp_listen || wire == FeedWire::udp_connect ||
                         wire == FeedWire::udp_request || wire == FeedWire::udp_relay;
     return context;
 }
-
-}  // namespace
 
 FeedWorker::FeedWorker(FeedAddress address, FeedContext context, bool gathers, FeedDesk& desk)
     : address_(std::move(address)),
@@ -171,88 +169,76 @@ std::string FeedWorker::description() const {
 }
 
 // The loop's side; the thread's is FeedWorker.
-class TruthFeed::Impl {
+class ThreadedFeed final : public TruthFeed {
 public:
-    Impl(FeedAddress address, const FeedSettings& settings)
+    ThreadedFeed(FeedAddress address, const FeedSettings& settings)
         : paths_(settings, desk_),
           worker_(std::move(address), settings.context, settings.clock == ClockMode::realtime, desk_) {}
 
+    Result<void> start(const std::function<std::thread(std::function<void()>)>& thread) {
+        if (const auto opened = worker_.open(); !opened) return fail(opened.error());
+        worker_.start(thread);
+        return {};
+    }
+
+    std::shared_ptr<LivePath> path(const std::string& vehicle) override { return paths_.path(vehicle); }
+    std::shared_ptr<LivePath> path(const std::string& vehicle, const LivePathSettings& settings) override {
+        return paths_.path(vehicle, settings);
+    }
+    void wait_for_all() override { paths_.wait_for_all(); }
+    void begin(GpsTime start, std::int64_t steady_ns) override { paths_.begin(start, steady_ns); }
+    void set_run(GpsTime now, std::int64_t steady_ns) override { paths_.set_run(now, steady_ns); }
+
+    std::vector<Command> pump() override {
+        std::vector<Command> commands = paths_.take(steady_clock_ns());
+        for (const FeedStep& step : paths_.steps_done_before())
+            worker_.post(step, 0);
+        return commands;
+    }
+    bool wait(std::chrono::nanoseconds longest) override { return paths_.any_left() || desk_.inbox.wait(longest); }
+    [[nodiscard]] std::optional<GpsTime> horizon() const override { return paths_.horizon(); }
+    void stepped(std::uint64_t bytes) override {
+        std::vector<FeedStep> steps = paths_.steps_done();
+        for (std::size_t i = 0; i < steps.size(); ++i)
+            worker_.post(steps[i], i + 1 == steps.size() ? bytes : 0);
+    }
+    void skip_steps() override {
+        for (const FeedStep& step : paths_.skip_steps())
+            worker_.post(step, 0);
+    }
+    [[nodiscard]] bool is_waited_on() const override { return paths_.any_step(); }
+    [[nodiscard]] bool ended() const override { return paths_.ended(); }
+    [[nodiscard]] bool paused() const override { return paths_.paused(); }
+
+    [[nodiscard]] FeedCounts counts() const override {
+        const FeedTallies& t = desk_.tallies;
+        return {t.messages,  t.bytes,      t.samples,           t.statements, t.refused,
+                t.strangers, t.overflowed, t.dropped_by_kernel, t.restarts,   t.lost};
+    }
+    [[nodiscard]] const SourceClock& clock() const override { return paths_.clock(); }
+    std::vector<std::string> take_news() override {
+        std::vector<std::string> news = desk_.news.take();
+        for (std::string& sentence : news)
+            sentence.insert(0, description() + ": ");
+        return news;
+    }
+    [[nodiscard]] std::string description() const override { return worker_.description(); }
+    [[nodiscard]] std::uint16_t port() const override { return worker_.port(); }
+
+private:
     FeedDesk desk_;
     FeedPaths paths_;
     FeedWorker worker_;  // last: its thread uses the others
 };
 
-TruthFeed::TruthFeed(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-TruthFeed::~TruthFeed() = default;
+}  // namespace
 
 Result<std::unique_ptr<TruthFeed>> TruthFeed::open(const FeedAddress& address, const FeedSettings& settings) {
     if (!make_dialect(address.dialect, settings.context))
         return fail(ErrorCode::usage, fmt::format("{}: this version does not speak {}", address.text, address.dialect));
-    auto impl = std::make_unique<Impl>(address, settings);
-    if (const auto opened = impl->worker_.open(); !opened) return fail(opened.error());
-    impl->worker_.start(settings.thread);
-    return std::unique_ptr<TruthFeed>(new TruthFeed(std::move(impl)));
+    auto feed = std::make_unique<ThreadedFeed>(address, settings);
+    if (const auto started = feed->start(settings.thread); !started) return fail(started.error());
+    return feed;
 }
-
-std::shared_ptr<LivePath> TruthFeed::path(const std::string& vehicle) { return impl_->paths_.path(vehicle); }
-
-std::shared_ptr<LivePath> TruthFeed::path(const std::string& vehicle, const LivePathSettings& settings) {
-    return impl_->paths_.path(vehicle, settings);
-}
-
-void TruthFeed::wait_for_all() { impl_->paths_.wait_for_all(); }
-
-void TruthFeed::begin(GpsTime start, std::int64_t steady_ns) { impl_->paths_.begin(start, steady_ns); }
-
-void TruthFeed::set_run(GpsTime now, std::int64_t steady_ns) { impl_->paths_.set_run(now, steady_ns); }
-
-std::vector<Command> TruthFeed::pump() {
-    std::vector<Command> commands = impl_->paths_.take(steady_clock_ns());
-    for (const FeedStep& step : impl_->paths_.steps_done_before())
-        impl_->worker_.post(step, 0);
-    return commands;
-}
-
-bool TruthFeed::wait(std::chrono::nanoseconds longest) {
-    return impl_->paths_.any_left() || impl_->desk_.inbox.wait(longest);
-}
-
-std::optional<GpsTime> TruthFeed::horizon() const { return impl_->paths_.horizon(); }
-
-void TruthFeed::stepped(std::uint64_t bytes) {
-    std::vector<FeedStep> steps = impl_->paths_.steps_done();
-    for (std::size_t i = 0; i < steps.size(); ++i)
-        impl_->worker_.post(steps[i], i + 1 == steps.size() ? bytes : 0);
-}
-
-void TruthFeed::skip_steps() {
-    for (const FeedStep& step : impl_->paths_.skip_steps())
-        impl_->worker_.post(step, 0);
-}
-
-bool TruthFeed::is_waited_on() const { return impl_->paths_.any_step(); }
-
-bool TruthFeed::ended() const { return impl_->paths_.ended(); }
-
-bool TruthFeed::paused() const { return impl_->paths_.paused(); }
-
-FeedCounts TruthFeed::counts() const {
-    const FeedTallies& t = impl_->desk_.tallies;
-    return {t.messages,  t.bytes,      t.samples,           t.statements, t.refused,
-            t.strangers, t.overflowed, t.dropped_by_kernel, t.restarts,   t.lost};
-}
-
-const SourceClock& TruthFeed::clock() const { return impl_->paths_.clock(); }
-
-std::vector<std::string> TruthFeed::take_news() {
-    std::vector<std::string> news = impl_->desk_.news.take();
-    for (std::string& sentence : news)
-        sentence.insert(0, description() + ": ");
-    return news;
-}
-
-std::string TruthFeed::description() const { return impl_->worker_.description(); }
-
-std::uint16_t TruthFeed::port() const { return impl_->worker_.port(); }
 
 }  // namespace skyloop::inline run

@@ -69,53 +69,46 @@ class TruthFeed {
 public:
     /// Listens, or begins to connect, when it returns. Fails with `outside` when the address cannot be used.
     static Result<std::unique_ptr<TruthFeed>> open(const FeedAddress& address, const FeedSettings& settings);
-    ~TruthFeed();
-    TruthFeed(const TruthFeed&) = delete;
-    TruthFeed& operator=(const TruthFeed&) = delete;
+    virtual ~TruthFeed() = default;
 
     /// The path of one of the source's vehicles; empty: of the first that it speaks of. Before begin().
-    std::shared_ptr<LivePath> path(const std::string& vehicle);
+    virtual std::shared_ptr<LivePath> path(const std::string& vehicle) = 0;
     /// The same with settings of its own, where nobody has asked for this vehicle before.
-    std::shared_ptr<LivePath> path(const std::string& vehicle, const LivePathSettings& settings);
+    virtual std::shared_ptr<LivePath> path(const std::string& vehicle, const LivePathSettings& settings) = 0;
     /// The run waits until every path has a sample: somebody has no place before. A run that follows then starts with
     /// the newest statement about each of them. Before begin().
-    void wait_for_all();
+    virtual void wait_for_all() = 0;
     /// The run starts. @param steady_ns the steady clock at that instant
-    void begin(GpsTime start, std::int64_t steady_ns);
+    virtual void begin(GpsTime start, std::int64_t steady_ns) = 0;
     /// The run is at `now` when the steady clock reads `steady_ns`: after a pause or a change of speed.
-    void set_run(GpsTime now, std::int64_t steady_ns);
+    virtual void set_run(GpsTime now, std::int64_t steady_ns) = 0;
 
     /// Puts what has come into the paths; by the loop's thread, never waits. @return what the source asks of the run
-    std::vector<Command> pump();
+    virtual std::vector<Command> pump() = 0;
     /// Waits until something has come, at most so long; follow and lock_step. @return something has
-    bool wait(std::chrono::nanoseconds longest);
+    virtual bool wait(std::chrono::nanoseconds longest) = 0;
     /// How far the run may go: follow: the newest sample; lock_step: the newest step. Nothing: not at all yet.
-    [[nodiscard]] std::optional<GpsTime> horizon() const;
+    [[nodiscard]] virtual std::optional<GpsTime> horizon() const = 0;
     /// lock_step: the run has done all up to the horizon; answers the source. @param bytes that the run has put out
-    void stepped(std::uint64_t bytes);
+    virtual void stepped(std::uint64_t bytes) = 0;
     /// lock_step, while the run waits for a vehicle's first place: steps so far are answered, there was nothing to do
     /// for them, and the next statement is the start of the run.
-    void skip_steps();
+    virtual void skip_steps() = 0;
     /// lock_step: a step is not answered yet. The source waits for us, and has nothing to say meanwhile.
-    [[nodiscard]] bool is_waited_on() const;
+    [[nodiscard]] virtual bool is_waited_on() const = 0;
     /// The source has said that it is over; where it spoke of several vehicles, none of them has come for 1.5 s since.
-    [[nodiscard]] bool ended() const;
+    [[nodiscard]] virtual bool ended() const = 0;
     /// True between FeedNews::paused = true and false.
-    [[nodiscard]] bool paused() const;
+    [[nodiscard]] virtual bool paused() const = 0;
 
-    [[nodiscard]] FeedCounts counts() const;
-    [[nodiscard]] const SourceClock& clock() const;
+    [[nodiscard]] virtual FeedCounts counts() const = 0;
+    [[nodiscard]] virtual const SourceClock& clock() const = 0;
     /// What happened since the last call, a sentence each: connected, lost, refused statements, silent, jumped.
-    std::vector<std::string> take_news();
+    virtual std::vector<std::string> take_news() = 0;
     /// "udp-json:127.0.0.1:5000"; "xplane:127.0.0.1:49000 (own port 49005)"
-    [[nodiscard]] std::string description() const;
+    [[nodiscard]] virtual std::string description() const = 0;
     /// As the system gave it, for listeners and udp_request.
-    [[nodiscard]] std::uint16_t port() const;
-
-private:
-    class Impl;
-    explicit TruthFeed(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    [[nodiscard]] virtual std::uint16_t port() const = 0;
 };
 
 }  // namespace skyloop::inline run

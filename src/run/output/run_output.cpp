@@ -50,11 +50,10 @@ Result<std::unique_ptr<MessageSink>> open_sink(const OutputSettings& settings) {
     return make_wire_sink(std::move(*connection));
 }
 
-}  // namespace
-
-class RunOutput::Impl {
+class QueuedOutput final : public RunOutput {
 public:
-    Impl(const OutputSettings& settings, OutputParts parts, std::vector<bool> told, std::unique_ptr<MessageSink> sink)
+    QueuedOutput(const OutputSettings& settings, OutputParts parts, std::vector<bool> told,
+                 std::unique_ptr<MessageSink> sink)
         : settings_(settings),
           parts_(std::move(parts)),
           told_(std::move(told)),
@@ -65,11 +64,9 @@ public:
                                    sink_->description())) {
         with_signals_held_back([this] { thread_ = std::thread([this] { work(); }); });
     }
-    Impl(const Impl&) = delete;
-    Impl& operator=(const Impl&) = delete;
-    ~Impl() { finish(); }
+    ~QueuedOutput() override { finish(); }
 
-    void begin() {
+    void begin() override {
         {
             const std::scoped_lock lock(mutex_);
             begun_ = true;
@@ -77,7 +74,7 @@ public:
         changed_.notify_one();
     }
 
-    void take(const EpochSeen& seen) {
+    void on_epoch(const EpochSeen& seen) override {
         if (seen.station >= told_.size() || !told_[seen.station]) return;
         const bool at_report = settings_.when == OutputMoment::report && seen.leaves.has_value();
         Waiting waiting;
@@ -89,7 +86,7 @@ public:
         push(std::move(waiting), seen.now);
     }
 
-    void finish() {
+    void finish() override {
         {
             const std::scoped_lock lock(mutex_);
             for (Waiting& one : handed_)
@@ -101,19 +98,19 @@ public:
         if (thread_.joinable()) thread_.join();
     }
 
-    [[nodiscard]] OutputCounts counts() const {
+    [[nodiscard]] OutputCounts counts() const override {
         const std::scoped_lock lock(mutex_);
         return {sent_, left_out_};
     }
-    std::vector<std::string> take_news() {
+    std::vector<std::string> take_news() override {
         const std::unique_lock lock(mutex_, std::try_to_lock);
         return lock ? std::exchange(news_, {}) : std::vector<std::string>{};
     }
-    [[nodiscard]] std::string failure() const {
+    [[nodiscard]] std::string failure() const override {
         const std::scoped_lock lock(mutex_);
         return failure_;
     }
-    [[nodiscard]] const std::string& description() const { return description_; }
+    [[nodiscard]] std::string description() const override { return description_; }
 
 private:
     struct Waiting {
@@ -244,24 +241,14 @@ private:
     std::thread thread_;  // last: it uses all of them
 };
 
-RunOutput::RunOutput(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-RunOutput::~RunOutput() = default;
+}  // namespace
 
 Result<std::unique_ptr<RunOutput>> RunOutput::open(const OutputSettings& settings, OutputParts parts) {
     auto told = told_receivers(settings, parts.receivers);
     if (!told) return fail(told.error());
     auto sink = open_sink(settings);
     if (!sink) return fail(sink.error());
-    return std::unique_ptr<RunOutput>(
-        new RunOutput(std::make_unique<Impl>(settings, std::move(parts), std::move(*told), std::move(*sink))));
+    return std::make_unique<QueuedOutput>(settings, std::move(parts), std::move(*told), std::move(*sink));
 }
-
-void RunOutput::begin() { impl_->begin(); }
-void RunOutput::on_epoch(const EpochSeen& seen) { impl_->take(seen); }
-void RunOutput::finish() { impl_->finish(); }
-OutputCounts RunOutput::counts() const { return impl_->counts(); }
-std::vector<std::string> RunOutput::take_news() { return impl_->take_news(); }
-std::string RunOutput::failure() const { return impl_->failure(); }
-std::string RunOutput::description() const { return impl_->description(); }
 
 }  // namespace skyloop::inline run

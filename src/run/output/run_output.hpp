@@ -41,29 +41,21 @@ public:
     /// Connected, listening or opened when it returns. Fails with `usage` for a receiver that there is not, and as the
     /// ways themselves fail.
     static Result<std::unique_ptr<RunOutput>> open(const OutputSettings& settings, OutputParts parts);
-    ~RunOutput() override;
-    RunOutput(const RunOutput&) = delete;
-    RunOutput& operator=(const RunOutput&) = delete;
 
     /// Nothing refuses the run any more: a file that was there is emptied. An epoch begins it, too.
-    void begin();
-    void on_epoch(const EpochSeen& seen) override;
+    virtual void begin() = 0;
+    void on_epoch(const EpochSeen& seen) override = 0;
     /// The run is over: what still waits is told now. May wait for slow readers, for 0.2 s; with waits_for_readers for
     /// 2 s.
-    void finish();
+    virtual void finish() = 0;
 
-    [[nodiscard]] OutputCounts counts() const;
+    [[nodiscard]] virtual OutputCounts counts() const = 0;
     /// Sentences for the user; each is given once in a run.
-    std::vector<std::string> take_news();
+    virtual std::vector<std::string> take_news() = 0;
     /// What has broken for good, in one sentence; empty: nothing.
-    [[nodiscard]] std::string failure() const;
+    [[nodiscard]] virtual std::string failure() const = 0;
     /// "gps-input: 127.0.0.1:14550 (udp)"
-    [[nodiscard]] std::string description() const;
-
-private:
-    class Impl;
-    explicit RunOutput(std::unique_ptr<Impl> impl);
-    std::unique_ptr<Impl> impl_;
+    [[nodiscard]] virtual std::string description() const = 0;
 };
 
 }  // namespace skyloop::inline run
