@@ -224,39 +224,26 @@ namespace {
 
 constexpr Nanoseconds heartbeat_every = std::chrono::seconds(1);
 
-class JsonWriter : public EpochWriter {
-public:
-    Job note(const EpochSeen& seen, const std::string& receiver, std::uint64_t number) override {
-        return [record = record_epoch(seen, receiver, number)] {
-            return std::vector<Bytes>{to_bytes(epoch_line(record))};
-        };
-    }
-};
+EpochJob json_job(const EpochSeen& seen, const std::string& receiver, std::uint64_t number) {
+    return [record = record_epoch(seen, receiver, number)] { return std::vector<Bytes>{to_bytes(epoch_line(record))}; };
+}
 
-class MspWriter : public EpochWriter {
-public:
-    explicit MspWriter(std::uint8_t instance) : instance_(instance) {}
-
-    Job note(const EpochSeen& seen, const std::string&, std::uint64_t) override {
-        if (!seen.leaves) return [] { return std::vector<Bytes>{}; };
-        MspSensorGps message = firmware::msp_sensor_gps(seen.reported);
-        message.instance = instance_;
-        return [message] { return std::vector<Bytes>{encode_msp(message)}; };
-    }
-
-private:
-    std::uint8_t instance_;
-};
+EpochJob msp_job(const EpochSeen& seen, std::uint8_t instance) {
+    if (!seen.leaves) return [] { return std::vector<Bytes>{}; };
+    MspSensorGps message = firmware::msp_sensor_gps(seen.reported);
+    message.instance = instance;
+    return [message] { return std::vector<Bytes>{encode_msp(message)}; };
+}
 
 // A component of MAVLink: its messages are numbered in the order of sending, and each second begins with a heartbeat.
-class MavlinkWriter : public EpochWriter {
+class MavlinkWriter {
 public:
     explicit MavlinkWriter(const OutputSettings& settings) : settings_(settings) {
         source_.system = settings.system;
         source_.component = settings.component;
     }
 
-    Job note(const EpochSeen& seen, const std::string&, std::uint64_t) override {
+    EpochJob note(const EpochSeen& seen) {
         if (!seen.leaves) return [this, now = seen.now] { return beat(now); };
         if (settings_.format == OutputFormat::gps_input) {
             MavlinkGpsInput message = firmware::mavlink_gps_input(seen.reported);
@@ -294,15 +281,19 @@ private:
 
 }  // namespace
 
-std::unique_ptr<EpochWriter> make_epoch_writer(const OutputSettings& settings) {
+EpochWriter make_epoch_writer(const OutputSettings& settings) {
     switch (settings.format) {
         case OutputFormat::json:
-            return std::make_unique<JsonWriter>();
+            return json_job;
         case OutputFormat::msp:
-            return std::make_unique<MspWriter>(settings.id);
+            return [id = settings.id](const EpochSeen& seen, const std::string&, std::uint64_t) {
+                return msp_job(seen, id);
+            };
         default:
-            return std::make_unique<MavlinkWriter>(settings);
+            break;
     }
+    return [writer = std::make_shared<MavlinkWriter>(settings)](const EpochSeen& seen, const std::string&,
+                                                                std::uint64_t) { return writer->note(seen); };
 }
 
 }  // namespace skyloop::inline run

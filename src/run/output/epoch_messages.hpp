@@ -49,20 +49,14 @@ std::string epoch_line(const EpochRecord& record);
 /// their limits (327.67 m/s, over ground 655.34 m/s).
 MavlinkHilGps mavlink_hil_gps(const firmware::NavigationState& state, HilGpsAccuracy accuracy);
 
-/// Copies what a format needs of an epoch, and makes its messages later, on another thread.
-///
-/// State: what the format counts from message to message.
-class EpochWriter {
-public:
-    /// Makes the messages; jobs are run one after the other, in the order in which they are to be sent.
-    using Job = std::function<std::vector<Bytes>()>;
+/// Makes the messages of an epoch; jobs are run one after the other, in the order in which they are to be sent.
+using EpochJob = std::function<std::vector<Bytes>()>;
 
-    virtual ~EpochWriter() = default;
-    /// On the thread of the loop. The job outlives the epoch, and not the writer.
-    /// @param number of the receiver's epochs, from 0
-    virtual Job note(const EpochSeen& seen, const std::string& receiver, std::uint64_t number) = 0;
-};
+/// Copies what a format needs of an epoch, on the thread of the loop, and makes its messages later, on another thread.
+/// The job outlives the epoch, and not the writer. State: what the format counts from message to message.
+/// @param number of the receiver's epochs, from 0
+using EpochWriter = std::function<EpochJob(const EpochSeen& seen, const std::string& receiver, std::uint64_t number)>;
 
-std::unique_ptr<EpochWriter> make_epoch_writer(const OutputSettings& settings);
+EpochWriter make_epoch_writer(const OutputSettings& settings);
 
 }  // namespace skyloop::inline run

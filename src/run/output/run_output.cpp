@@ -82,7 +82,7 @@ public:
         waiting.due_ns = parts_.due_ns ? parts_.due_ns(waiting.leaves) : std::nullopt;
         // A fault may make a receiver report an epoch several times.
         if (settings_.format != OutputFormat::json) waiting.times = std::max(1, seen.reported.reports);
-        waiting.job = writer_->note(seen, parts_.receivers[seen.station], numbers_[seen.station]++);
+        waiting.job = writer_(seen, parts_.receivers[seen.station], numbers_[seen.station]++);
         push(std::move(waiting), seen.now);
     }
 
@@ -117,7 +117,7 @@ private:
         GpsTime leaves;
         std::optional<std::int64_t> due_ns;
         int times = 1;
-        EpochWriter::Job job;
+        EpochJob job;
     };
     // A report that is delayed may be overtaken by a later one, as on a wire.
     using Queue = std::map<std::pair<GpsTime, std::uint64_t>, Waiting>;
@@ -223,7 +223,7 @@ private:
     const std::vector<bool> told_;
     std::vector<std::uint64_t> numbers_;  // of the loop's thread
     std::vector<Waiting> handed_;         // of the loop's thread: not in the queue yet
-    std::unique_ptr<EpochWriter> writer_;
+    EpochWriter writer_;
     std::unique_ptr<MessageSink> sink_;  // of the output's thread, once it runs
     std::set<std::string> said_;         // of the output's thread
     const std::string description_;
