@@ -81,7 +81,6 @@ void CarefulClient::hear(const StreamPiece& piece) {
     last_message_ = now();
     if (hunt_.hunting()) {
         hunt_.found();
-        damaged_before_ = skipped_before_ = 0;
         damaged_before_ = counts().bad[0] + counts().bad[1];
         skipped_before_ = counts().skipped;
         damages_.clear();

@@ -38,20 +38,23 @@ std::optional<Bytes> ConfigurationDialogue::advance(GpsTime now) {
     return steps_[current_].request;
 }
 
-void ConfigurationDialogue::give_up_step() {
-    ++unanswered_;
-    mute_ = mute_ || !steps_[current_].next_speed;
-    if (steps_[current_].next_speed) speed_ = steps_[current_].next_speed;
+void ConfigurationDialogue::next_step() {
     ++current_;
     attempts_ = 0;
 }
 
-void ConfigurationDialogue::finish_step(bool change_speed) {
+void ConfigurationDialogue::give_up_step() {
+    ++unanswered_;
+    mute_ = mute_ || !steps_[current_].next_speed;
+    if (steps_[current_].next_speed) speed_ = steps_[current_].next_speed;
+    next_step();
+}
+
+void ConfigurationDialogue::finish_step() {
     ++confirmed_;
     mute_ = false;
-    if (change_speed && steps_[current_].next_speed) speed_ = steps_[current_].next_speed;
-    ++current_;
-    attempts_ = 0;
+    if (steps_[current_].next_speed) speed_ = steps_[current_].next_speed;
+    next_step();
 }
 
 void ConfigurationDialogue::take_refusal() {
@@ -60,8 +63,7 @@ void ConfigurationDialogue::take_refusal() {
     ++refused_;
     if (step.needed)
         failure_ = fmt::format("the receiver refuses message {:02X}-{:02X}", step.id.message_class, step.id.id);
-    ++current_;
-    attempts_ = 0;
+    next_step();
     steps_.insert(steps_.begin() + static_cast<std::ptrdiff_t>(current_), step.otherwise.begin(), step.otherwise.end());
 }
 
@@ -69,7 +71,7 @@ void ConfigurationDialogue::hear_acknowledgement(bool accepted) {
     if (!accepted) return take_refusal();
     const DialogueStep& step = steps_[current_];
     has_acknowledgement_ = true;
-    if (!step.answer || has_answer_) finish_step(true);
+    if (!step.answer || has_answer_) finish_step();
 }
 
 void ConfigurationDialogue::hear(UbxMessageId id, ByteSpan payload) {
@@ -78,7 +80,7 @@ void ConfigurationDialogue::hear(UbxMessageId id, ByteSpan payload) {
     if (step.answer == id) {
         if (step.accept && !step.accept(payload)) return;
         has_answer_ = true;
-        if (!step.acknowledged || has_acknowledgement_) finish_step(true);
+        if (!step.acknowledged || has_acknowledgement_) finish_step();
         return;
     }
     if (id != AckAck::message_id && id != AckNak::message_id) return;

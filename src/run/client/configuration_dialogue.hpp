@@ -51,7 +51,8 @@ public:
     [[nodiscard]] int unanswered() const { return unanswered_; }
 
 private:
-    void finish_step(bool change_speed);
+    void next_step();
+    void finish_step();
     void give_up_step();
     void take_refusal();
     void hear_acknowledgement(bool accepted);

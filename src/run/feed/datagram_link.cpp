@@ -1,25 +1,12 @@
-#include <algorithm>
 #include <optional>
-#include <tuple>
 #include <utility>
 
-#include "base/core/threads.hpp"
 #include "detail/feed_link.hpp"
 
 namespace skyloop::inline run {
 namespace {
 
-constexpr std::size_t most_datagram_peers = 8;
-constexpr std::int64_t datagram_peer_memory_ns = 10'000'000'000;
 constexpr int most_batches = 8;  // in one look, so that a flood does not hold up the rest
-
-// What the network does not take is lost, as anything on UDP may be.
-void send_datagram(int socket, const Bytes& bytes, const FeedPeer* to) {
-    if (to == nullptr)
-        std::ignore = ::send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-    else
-        std::ignore = ::sendto(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT, to->get(), to->length);
-}
 
 // A socket, and whom it speaks to first: nobody, the one that it is connected to, or `asked`, who may answer from
 // another port than the one where it hears.
@@ -52,7 +39,7 @@ public:
                     continue;
                 }
                 const FeedHearer::Heard heard = hearer_.hear(0, datagram.bytes, datagram.received_ns);
-                if (heard.understood && !speaks_first()) remember(*datagram.from, now_ns);
+                if (heard.understood && !speaks_first()) peers_.remember(*datagram.from, now_ns);
                 for (const Bytes& answer : heard.answers)
                     send_datagram(socket_.value(), answer, connected_ ? nullptr : asked_ ? &*asked_ : datagram.from);
             }
@@ -68,7 +55,7 @@ public:
     }
 
     void speak(std::int64_t now_ns) override {
-        std::erase_if(peers_, [&](const auto& peer) { return now_ns > peer.second + datagram_peer_memory_ns; });
+        peers_.forget_old(now_ns);
         if (!speaks_first() && peers_.empty()) return;
         answer(0, hearer_.say(0));
     }
@@ -76,8 +63,7 @@ public:
     void answer(std::uint64_t, const std::vector<Bytes>& answers) override {
         for (const Bytes& bytes : answers) {
             if (speaks_first()) send_datagram(socket_.value(), bytes, asked_ ? &*asked_ : nullptr);
-            for (const auto& peer : peers_)
-                send_datagram(socket_.value(), bytes, &peer.first);
+            peers_.send_to_all(socket_.value(), bytes);
         }
     }
 
@@ -93,21 +79,12 @@ private:
                      "datagrams of " + shown_peer(stranger) + " left out: it is another host");
     }
 
-    void remember(const FeedPeer& from, std::int64_t now_ns) {
-        const auto known =
-            std::find_if(peers_.begin(), peers_.end(), [&](const auto& peer) { return peer.first == from; });
-        if (known != peers_.end())
-            known->second = now_ns;
-        else if (peers_.size() < most_datagram_peers)
-            peers_.emplace_back(from, now_ns);
-    }
-
     FileDescriptor socket_;
     DatagramReader reader_;
     bool connected_;
     std::optional<FeedPeer> asked_;
     FeedHearer& hearer_;
-    std::vector<std::pair<FeedPeer, std::int64_t>> peers_;  // and when they were heard
+    DatagramPeers peers_;
 };
 
 // Stands between two programs: every datagram goes on at once, unmodified, and one direction is also heard.
@@ -135,14 +112,11 @@ public:
                                                                  " left out: " + shown_peer(*peer_) + " is connected");
                 continue;
             }
-            std::ignore =
-                ::send(far_.value(), datagram.bytes.data(), datagram.bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            send_datagram(far_.value(), datagram.bytes, nullptr);
         }
         const auto& from_far = far_reader_.take();
         for (const FeedDatagram& datagram : from_far)
-            if (peer_)
-                std::ignore = ::sendto(near_.value(), datagram.bytes.data(), datagram.bytes.size(),
-                                       MSG_NOSIGNAL | MSG_DONTWAIT, peer_->get(), peer_->length);
+            if (peer_) send_datagram(near_.value(), datagram.bytes, &*peer_);
         // First forwarded, then heard: others wait.
         for (const FeedDatagram& datagram : hears_far_ ? from_far : from_near)
             if (hears_far_ || *datagram.from == *peer_) hearer_.hear(0, datagram.bytes, datagram.received_ns);

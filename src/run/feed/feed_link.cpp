@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <tuple>
 #include <utility>
 
 #include "base/core/threads.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 constexpr int feed_receive_buffer = 4 << 20;  // FEEDS.md 3.1: at least 1 MiB; some thousand datagrams
 constexpr int feed_backlog = 8;
+constexpr std::size_t most_datagram_peers = 8;
+constexpr std::int64_t datagram_peer_memory_ns = 10'000'000'000;
 
 tl::unexpected<Error> socket_failure(const TcpAddress& address, std::string_view why) {
     return fail(ErrorCode::outside, fmt::format("{}: {}", shown_address(address), why));
@@ -142,6 +145,38 @@ std::uint16_t own_port(int socket) {
     return 0;
 }
 
+// What the network does not take is lost, as anything on UDP may be.
+void send_datagram(int socket, ByteSpan bytes, const FeedPeer* to) {
+    constexpr int flags = MSG_NOSIGNAL | MSG_DONTWAIT;
+    if (to == nullptr)
+        std::ignore = ::send(socket, bytes.data(), bytes.size(), flags);
+    else
+        std::ignore = ::sendto(socket, bytes.data(), bytes.size(), flags, to->get(), to->length);
+}
+
+void DatagramPeers::forget_old(std::int64_t now_ns) {
+    std::erase_if(peers_, [&](const Heard& heard) { return now_ns > heard.at_ns + datagram_peer_memory_ns; });
+}
+
+bool DatagramPeers::has_room_for(const FeedPeer& peer) const {
+    const auto is_he = [&](const Heard& heard) { return heard.peer == peer; };
+    return peers_.size() < most_datagram_peers || std::any_of(peers_.begin(), peers_.end(), is_he);
+}
+
+void DatagramPeers::remember(const FeedPeer& peer, std::int64_t now_ns) {
+    const auto is_he = [&](const Heard& heard) { return heard.peer == peer; };
+    const auto known = std::find_if(peers_.begin(), peers_.end(), is_he);
+    if (known != peers_.end())
+        known->at_ns = now_ns;
+    else if (peers_.size() < most_datagram_peers)
+        peers_.push_back({peer, now_ns});
+}
+
+void DatagramPeers::send_to_all(int socket, ByteSpan bytes) const {
+    for (const Heard& heard : peers_)
+        send_datagram(socket, bytes, &heard.peer);
+}
+
 DatagramReader::DatagramReader(int socket)
     : socket_(socket), bytes_(std::make_unique_for_overwrite<std::uint8_t[]>(batch * longest)) {
     set_socket_option(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1);
@@ -230,15 +265,15 @@ void FeedStream::send_waiting() {
     if (gone_) waiting_.clear();
 }
 
-void ConnectBackoff::failed(std::int64_t now_ns) {
-    next_ns_ = now_ns + wait_ns_;
-    wait_ns_ = std::min(2 * wait_ns_, longest_ns);
+void StreamConnector::put_off(std::int64_t now_ns) {
+    next_try_ns_ = now_ns + wait_ns_;
+    wait_ns_ = std::min(2 * wait_ns_, longest_wait_ns);
 }
 
 FileDescriptor StreamConnector::look(std::int64_t now_ns, std::string& why) {
     constexpr std::int64_t patience_ns = 5'000'000'000;
     if (!socket_.open()) {
-        if (!backoff_.due(now_ns)) return {};
+        if (now_ns < next_try_ns_) return {};
         socket_ = begin_connecting(peers_[next_++ % peers_.size()], why);
         begun_ns_ = now_ns;
     }
@@ -254,13 +289,13 @@ FileDescriptor StreamConnector::look(std::int64_t now_ns, std::string& why) {
     }
     socket_ = FileDescriptor();
     // All addresses of the host are tried before a pause.
-    if (next_ % peers_.size() == 0) backoff_.failed(now_ns);
+    if (next_ % peers_.size() == 0) put_off(now_ns);
     return {};
 }
 
 void StreamConnector::lost(std::int64_t now_ns, bool lasted) {
-    if (lasted) backoff_.succeeded();
-    backoff_.failed(now_ns);
+    if (lasted) wait_ns_ = first_wait_ns;
+    put_off(now_ns);
 }
 
 }  // namespace skyloop::inline run

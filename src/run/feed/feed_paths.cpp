@@ -215,24 +215,17 @@ void FeedPaths::take_step(const FeedStep& step) {
     newest_step_ = std::max(newest_step_.value_or(stamped.time), stamped.time);
 }
 
-std::vector<FeedStep> FeedPaths::steps_done() {
-    const auto reached = horizon();
-    std::vector<FeedStep> done;
-    while (reached && !steps_.empty() && steps_.front().time <= *reached) {
-        done.push_back(steps_.front().step);
-        steps_.pop_front();
-    }
-    if (reached) answered_ = reached;
-    return done;
+std::vector<FeedStep> FeedPaths::take_steps(std::optional<GpsTime> until) {
+    std::vector<FeedStep> taken;
+    for (; until && !steps_.empty() && steps_.front().time <= *until; steps_.pop_front())
+        taken.push_back(steps_.front().step);
+    return taken;
 }
 
-std::vector<FeedStep> FeedPaths::steps_done_before() {
-    std::vector<FeedStep> done;
-    while (answered_ && !steps_.empty() && steps_.front().time <= *answered_) {
-        done.push_back(steps_.front().step);
-        steps_.pop_front();
-    }
-    return done;
+std::vector<FeedStep> FeedPaths::steps_done() {
+    const auto reached = horizon();
+    if (reached) answered_ = reached;
+    return take_steps(reached);
 }
 
 // What has been said until now is over; the next statement is the start.

@@ -4,14 +4,13 @@
 #include <poll.h>
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
-#include <tuple>
 #include <utility>
 
+#include "base/core/threads.hpp"
 #include "detail/feed_link.hpp"
 #include "run/feed/mavlink_component.hpp"
 
@@ -21,9 +20,9 @@ namespace {
 using namespace std::chrono_literals;
 using SteadyTime = MavlinkComponent::Time;
 
-constexpr std::size_t longest_datagram = 2048, most_peers = 8;
+constexpr std::size_t longest_datagram = 2048;
 constexpr int datagrams_at_once = 64;
-constexpr auto heartbeat_period = 1s, peer_memory = 10s;
+constexpr auto heartbeat_period = 1s;
 constexpr auto flood_pause = 10ms;
 constexpr int patience_ms = 50;  // of one wait: how late a stop, a heartbeat or a held state may be
 
@@ -58,11 +57,6 @@ public:
     }
 
 private:
-    struct Peer {
-        FeedPeer address;
-        SteadyTime heard_at{};
-    };
-
     void run() {
         SteadyTime heartbeat_at = std::chrono::steady_clock::now();
         while (!stop_) {
@@ -72,7 +66,7 @@ private:
             const int taken = take(now);
             component_.look(now);
             if (now >= heartbeat_at) {
-                beat(now);
+                beat();
                 heartbeat_at = now + heartbeat_period;
             }
             if (taken == datagrams_at_once) std::this_thread::sleep_for(flood_pause);
@@ -95,52 +89,29 @@ private:
     }
 
     void hear(ByteSpan datagram, const FeedPeer& from, SteadyTime now) {
-        if (!address_.speaks_first && !is_welcome(from, now)) return;
+        const FeedPeer* peer = address_.speaks_first ? nullptr : &from;
+        peers_.forget_old(steady_clock_ns());
+        if (peer != nullptr && !peers_.has_room_for(from)) return;
         const MavlinkComponent::Heard heard = component_.hear(datagram, now);
         if (!heard.any) return;
-        if (!address_.speaks_first) remember(from, now);
+        if (peer != nullptr) peers_.remember(from, steady_clock_ns());
         for (const Bytes& answer : heard.answers)
-            send(answer, from);
+            send_datagram(socket_.value(), answer, peer);
     }
 
-    bool is_welcome(const FeedPeer& from, SteadyTime now) {
-        std::erase_if(peers_, [&](const Peer& peer) { return now > peer.heard_at + peer_memory; });
-        return peers_.size() < most_peers || find(from) != peers_.end();
-    }
-
-    std::vector<Peer>::iterator find(const FeedPeer& address) {
-        return std::find_if(peers_.begin(), peers_.end(), [&](const Peer& peer) { return peer.address == address; });
-    }
-
-    void remember(const FeedPeer& from, SteadyTime now) {
-        if (const auto known = find(from); known != peers_.end())
-            known->heard_at = now;
-        else
-            peers_.push_back({from, now});
-    }
-
-    void beat(SteadyTime now) {
-        std::erase_if(peers_, [&](const Peer& peer) { return now > peer.heard_at + peer_memory; });
+    void beat() {
+        peers_.forget_old(steady_clock_ns());
         if (!address_.speaks_first && peers_.empty()) return;
         const Bytes frame = component_.heartbeat();
-        if (address_.speaks_first) return send(frame, {});
-        for (const Peer& peer : peers_)
-            send(frame, peer.address);
-    }
-
-    // What the network does not take is lost, as anything on UDP may be.
-    void send(const Bytes& frame, const FeedPeer& to) const {
-        if (address_.speaks_first)
-            std::ignore = ::send(socket_.value(), frame.data(), frame.size(), MSG_NOSIGNAL);
-        else
-            std::ignore = ::sendto(socket_.value(), frame.data(), frame.size(), MSG_NOSIGNAL, to.get(), to.length);
+        if (address_.speaks_first) send_datagram(socket_.value(), frame, nullptr);
+        peers_.send_to_all(socket_.value(), frame);
     }
 
     MavlinkAddress address_;
     MavlinkComponent component_;  // of the thread alone, once it runs
     FileDescriptor socket_;
     std::uint16_t port_ = 0;
-    std::vector<Peer> peers_;
+    DatagramPeers peers_;
     std::array<std::uint8_t, longest_datagram> buffer_{};
     std::atomic<bool> stop_{false};
     std::thread thread_;

@@ -54,6 +54,29 @@ ConnectState finish_connecting(int socket, std::string& why);
 /// The port of its own end; 0 when it has none.
 std::uint16_t own_port(int socket);
 
+/// @param to null: whom the socket is connected to
+void send_datagram(int socket, ByteSpan bytes, const FeedPeer* to);
+
+/// Whom a socket that listens speaks to: at most 8 who have been heard, each forgotten after 10 s of silence.
+/// Times are of the steady clock.
+class DatagramPeers {
+public:
+    void forget_old(std::int64_t now_ns);
+    [[nodiscard]] bool empty() const { return peers_.empty(); }
+    /// He is one of them, or may become one.
+    [[nodiscard]] bool has_room_for(const FeedPeer& peer) const;
+    /// He has been heard; without room for him nothing changes.
+    void remember(const FeedPeer& peer, std::int64_t now_ns);
+    void send_to_all(int socket, ByteSpan bytes) const;
+
+private:
+    struct Heard {
+        FeedPeer peer;
+        std::int64_t at_ns = 0;
+    };
+    std::vector<Heard> peers_;
+};
+
 /// Datagrams as they came.
 struct FeedDatagram {
     ByteSpan bytes;
@@ -139,19 +162,8 @@ private:
     bool gone_ = false, finished_ = false;
 };
 
-/// Time until the next attempt to connect: 0.2 s at first, then twice as long each time, up to 5 s.
-class ConnectBackoff {
-public:
-    [[nodiscard]] bool due(std::int64_t now_ns) const { return now_ns >= next_ns_; }
-    void failed(std::int64_t now_ns);
-    void succeeded() { wait_ns_ = first_ns; }
-
-private:
-    static constexpr std::int64_t first_ns = 200'000'000, longest_ns = 5'000'000'000;
-    std::int64_t next_ns_ = 0, wait_ns_ = first_ns;
-};
-
-/// Connects to a host whose addresses are tried in turn, again and again.
+/// Connects to a host whose addresses are tried in turn, again and again: 0.2 s later at first, then after twice as
+/// long each time, up to 5 s.
 class StreamConnector {
 public:
     explicit StreamConnector(std::vector<FeedPeer> peers) : peers_(std::move(peers)) {}
@@ -163,11 +175,13 @@ public:
     void lost(std::int64_t now_ns, bool lasted);
 
 private:
+    void put_off(std::int64_t now_ns);
+
+    static constexpr std::int64_t first_wait_ns = 200'000'000, longest_wait_ns = 5'000'000'000;
     std::vector<FeedPeer> peers_;
     std::size_t next_ = 0;
     FileDescriptor socket_;
-    std::int64_t begun_ns_ = 0;
-    ConnectBackoff backoff_;
+    std::int64_t begun_ns_ = 0, next_try_ns_ = 0, wait_ns_ = first_wait_ns;
 };
 
 }  // namespace skyloop::inline run

@@ -33,7 +33,7 @@ public:
     /// Steps up to the horizon that have not been given yet.
     std::vector<FeedStep> steps_done();
     /// Of these, those that ask for what was done long ago.
-    std::vector<FeedStep> steps_done_before();
+    std::vector<FeedStep> steps_done_before() { return take_steps(answered_); }
     /// Steps that wait while the run cannot begin.
     std::vector<FeedStep> skip_steps();
     /// Some have not been given yet.
@@ -70,6 +70,7 @@ private:
     [[nodiscard]] bool is_wanted(const std::string& vehicle) const;
     [[nodiscard]] bool all_have_begun() const;
     void take_step(const FeedStep& step);
+    std::vector<FeedStep> take_steps(std::optional<GpsTime> until);
     SourceClock::Stamp stamp(const TruthSample& sample);
     void note(const SourceClock::Stamp& stamp, std::int64_t now_ns);
     void look(std::int64_t now_ns);
