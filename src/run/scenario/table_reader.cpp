@@ -98,23 +98,11 @@ void TableReader::number(std::string_view key, std::optional<double>& value, Num
     value = *found;
 }
 
-void TableReader::number(std::string_view key, double& value, NumberRange range, KeyText text) {
-    std::optional<double> found = value;
-    number(key, found, range, text);
-    value = *found;
-}
-
 void TableReader::degrees(std::string_view key, std::optional<Angle>& value, NumberRange range, KeyText text) {
     std::optional<double> found = value ? std::optional(value->deg()) : std::nullopt;
     const auto before = found;
     number(key, found, range, text);
     if (found != before) value = Angle::degrees(*found);
-}
-
-void TableReader::degrees(std::string_view key, Angle& value, NumberRange range, KeyText text) {
-    std::optional<Angle> found = value;
-    degrees(key, found, range, text);
-    value = *found;
 }
 
 std::optional<std::int64_t> TableReader::whole_number(std::string_view key, NumberRange range, KeyText text,
@@ -137,12 +125,6 @@ void TableReader::boolean(std::string_view key, std::optional<bool>& value, KeyT
     const auto* found = node->as_boolean();
     if (!found) return wrong_type(key, *node, "true or false");
     value = found->get();
-}
-
-void TableReader::boolean(std::string_view key, bool& value, KeyText text) {
-    std::optional<bool> found = value;
-    boolean(key, found, text);
-    value = *found;
 }
 
 void TableReader::text(std::string_view key, std::string& value, KeyText text) {

@@ -147,9 +147,13 @@ public:
         : table_(table), path_(std::move(path)), mistakes_(mistakes), recorder_(recorder) {}
 
     void number(std::string_view key, std::optional<double>& value, NumberRange range = {}, KeyText text = {});
-    void number(std::string_view key, double& value, NumberRange range = {}, KeyText text = {});
+    void number(std::string_view key, double& value, NumberRange range = {}, KeyText text = {}) {
+        with_default(value, [&](std::optional<double>& found) { number(key, found, range, text); });
+    }
     void boolean(std::string_view key, std::optional<bool>& value, KeyText text = {});
-    void boolean(std::string_view key, bool& value, KeyText text = {});
+    void boolean(std::string_view key, bool& value, KeyText text = {}) {
+        with_default(value, [&](std::optional<bool>& found) { boolean(key, found, text); });
+    }
     void text(std::string_view key, std::string& value, KeyText text = {});
     /// @param least how many there are at least, 0 or 1
     void texts(std::string_view key, std::vector<std::string>& values, KeyText text = {}, std::size_t least = 1);
@@ -163,9 +167,7 @@ public:
     }
     template <std::integral Integer>
     void integer(std::string_view key, Integer& value, NumberRange range, KeyText text = {}) {
-        std::optional<Integer> found = value;
-        integer(key, found, range, text);
-        value = *found;
+        with_default(value, [&](std::optional<Integer>& found) { integer(key, found, range, text); });
     }
     /// A list of exactly `count` numbers.
     /// @param standard what they are when the key is absent, for the catalogue of keys alone
@@ -211,13 +213,13 @@ public:
     }
     template <class Quantity>
     void quantity(std::string_view key, Quantity& value, NumberRange range, KeyText text = {}) {
-        std::optional<Quantity> found = value;
-        quantity(key, found, range, text);
-        value = *found;
+        with_default(value, [&](std::optional<Quantity>& found) { quantity(key, found, range, text); });
     }
     /// An angle in degrees.
     void degrees(std::string_view key, std::optional<Angle>& value, NumberRange range, KeyText text = {});
-    void degrees(std::string_view key, Angle& value, NumberRange range, KeyText text = {});
+    void degrees(std::string_view key, Angle& value, NumberRange range, KeyText text = {}) {
+        with_default(value, [&](std::optional<Angle>& found) { degrees(key, found, range, text); });
+    }
 
     /// Reads a sub-table with `body` and finishes it.
     void table(std::string_view key, KeyText text, const std::function<void(TableReader&)>& body);
@@ -287,6 +289,13 @@ public:
                                           std::string_view standard = {});
 
 private:
+    // Lets the reader of a value that may have no default read one that has.
+    template <class Value, class Read>
+    static void with_default(Value& value, Read read) {
+        std::optional<Value> found = value;
+        read(found);
+        value = *found;
+    }
     void note(std::string_view key, KeyText text, KeyEntry entry);
     void record_inner(std::string_view key, KeyText text, KeyEntry entry,
                       const std::function<void(TableReader&)>& body);
