@@ -136,9 +136,7 @@ Result<void> apply_repeat(const RunOptions& options, Scenario& scenario) {
 
 // A receiver that an output names must be there, even where the option took the place of others.
 Result<void> check_outputs(const Scenario& scenario) {
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
-        names.push_back(receiver_name(scenario, i));
+    const std::vector<std::string> names = receiver_names(scenario);
     for (const OutputSettings& output : scenario.outputs)
         if (const auto chosen = told_receivers(output, names); !chosen) return fail(chosen.error());
     return {};

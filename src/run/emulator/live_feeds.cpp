@@ -144,8 +144,7 @@ Result<std::unique_ptr<LiveFeeds>> LiveFeeds::open(Scenario& scenario, const Geo
     const std::vector<LiveSettings*> wanted = live_settings(scenario);
     if (wanted.empty()) return nullptr;
     std::unique_ptr<LiveFeeds> feeds(new LiveFeeds);
-    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
-        feeds->receivers_.push_back(receiver_name(scenario, i));
+    feeds->receivers_ = receiver_names(scenario);
     for (LiveSettings* live : wanted) {
         const auto source = feeds->source_of(*live, geoid);
         if (!source) return fail(source.error());

@@ -79,39 +79,26 @@ void read_expectation(TableReader& table, Expectation& expectation) {
     table.has_been_read("what");
 }
 
-// What the rest of a scenario is called.
-struct NamedThings {
-    std::vector<std::string> entries, receivers;
-};
-
-NamedThings named_things(const Scenario& scenario) {
-    NamedThings named;
-    for (const TimelineEntry& entry : timeline_of(scenario))
-        named.entries.push_back(entry.name);
-    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
-        named.receivers.push_back(receiver_name(scenario, i));
-    return named;
-}
-
-void check_names(TableReader& table, const Expectation& expectation, const NamedThings& named) {
+// @param entries names of all faults and commands
+void check_names(TableReader& table, const Expectation& expectation, std::span<const std::string> entries,
+                 std::span<const std::string> receivers) {
     if (expectation.sentence)
-        if (const std::string mistake = event_mistake(*expectation.sentence, named.entries); !mistake.empty())
+        if (const std::string mistake = event_mistake(*expectation.sentence, entries); !mistake.empty())
             table.mistake("what", mistake);
-    const std::string& receiver = expectation.receiver;
-    if (!receiver.empty() &&
-        std::find(named.receivers.begin(), named.receivers.end(), receiver) == named.receivers.end())
-        table.mistake("receiver", fmt::format("'{}' is no receiver of this scenario; expected one of {}", receiver,
-                                              fmt::join(named.receivers, ", ")));
+    if (!expectation.receiver.empty()) names_receiver(table, "receiver", expectation.receiver, receivers);
 }
 
 }  // namespace
 
 void read_expectations(TableReader& top, Scenario& scenario) {
-    const NamedThings named = named_things(scenario);
+    std::vector<std::string> entries;
+    for (const TimelineEntry& entry : timeline_of(scenario))
+        entries.push_back(entry.name);
+    const std::vector<std::string> receivers = receiver_names(scenario);
     top.tables("expect", "what the run is judged by (docs/failsafe.md)", [&](TableReader& table) {
         Expectation& expectation = scenario.expectations.emplace_back();
         read_expectation(table, expectation);
-        check_names(table, expectation, named);
+        check_names(table, expectation, entries, receivers);
     });
 }
 

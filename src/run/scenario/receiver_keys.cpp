@@ -101,12 +101,9 @@ void read_base(TableReader& receiver, std::span<const std::string> names, Scenar
     std::string base;
     receiver.text("base", base, {"name of the receiver that carries the base antenna of a pair", "none"});
     if (base.empty()) return;
-    const auto found = std::find(names.begin(), names.end(), base);
-    const auto index = static_cast<std::size_t>(found - names.begin());
-    if (found == names.end())
-        receiver.mistake("base", fmt::format("'{}' is no receiver of this scenario; expected one of {}", base,
-                                             fmt::join(names, ", ")));
-    else if (index + 1 == scenario.receivers.size())
+    if (!names_receiver(receiver, "base", base, names)) return;
+    const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), base) - names.begin());
+    if (index + 1 == scenario.receivers.size())
         receiver.mistake("base", fmt::format("'{}' is this receiver itself; expected another one", base));
     else
         scenario.receivers.back().base = index;
@@ -130,13 +127,7 @@ OutputSettings read_target(TableReader& table) {
 void read_receiver_of(TableReader& table, const Scenario& scenario, OutputSettings& output) {
     table.text("receiver", output.receiver,
                {"name of the receiver whose solution is sent", "all to json, the first to others"});
-    if (output.receiver.empty()) return;
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
-        names.push_back(receiver_name(scenario, i));
-    if (std::find(names.begin(), names.end(), output.receiver) == names.end())
-        table.mistake("receiver", fmt::format("'{}' is no receiver of this scenario; expected one of {}",
-                                              output.receiver, fmt::join(names, ", ")));
+    if (!output.receiver.empty()) names_receiver(table, "receiver", output.receiver, receiver_names(scenario));
 }
 
 void refuse_foreign_keys(TableReader& table, const OutputSettings& output) {
@@ -153,6 +144,21 @@ std::string default_receiver_name(std::size_t index) { return fmt::format("recei
 std::string receiver_name(const Scenario& scenario, std::size_t index) {
     const std::string& name = scenario.receivers.at(index).name;
     return name.empty() ? default_receiver_name(index) : name;
+}
+
+std::vector<std::string> receiver_names(const Scenario& scenario) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        names.push_back(receiver_name(scenario, i));
+    return names;
+}
+
+bool names_receiver(TableReader& table, std::string_view key, const std::string& name,
+                    std::span<const std::string> receivers) {
+    if (std::find(receivers.begin(), receivers.end(), name) != receivers.end()) return true;
+    table.mistake(
+        key, fmt::format("'{}' is no receiver of this scenario; expected one of {}", name, fmt::join(receivers, ", ")));
+    return false;
 }
 
 const TrajectorySettings& trajectory_of(const Scenario& scenario, std::size_t index) {

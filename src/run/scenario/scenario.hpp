@@ -254,5 +254,7 @@ std::string told_place(const Scenario& scenario, std::string_view key, std::stri
 
 /// What messages call a receiver: its name, or receiver0 and so on by its place in the list.
 std::string receiver_name(const Scenario& scenario, std::size_t index);
+/// The same of all of them.
+std::vector<std::string> receiver_names(const Scenario& scenario);
 
 }  // namespace skyloop::inline run

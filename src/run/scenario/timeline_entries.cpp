@@ -112,10 +112,9 @@ void name_entry(TimelineEntry& entry, std::string_view kind, const std::vector<E
 }
 
 std::vector<std::size_t> read_receiver_choice(TableReader& table, const Scenario& scenario, std::string_view meaning) {
-    std::vector<std::string> names, known;
+    std::vector<std::string> names;
+    const std::vector<std::string> known = receiver_names(scenario);
     table.text_or_texts("receiver", names, {meaning, "all"});
-    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
-        known.push_back(receiver_name(scenario, i));
     std::vector<std::size_t> chosen;
     for (std::size_t i = 0; i < known.size(); ++i)
         if (names.empty() || std::find(names.begin(), names.end(), known[i]) != names.end()) chosen.push_back(i);

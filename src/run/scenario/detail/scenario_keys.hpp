@@ -61,6 +61,9 @@ struct TrajectoryContext {
 
 /// "receiver1": what messages call a receiver without a name. @param index its place in the list
 std::string default_receiver_name(std::size_t index);
+/// Whether `name`, which the key has, is one of these receivers'; if not, that is a mistake of the key.
+bool names_receiver(TableReader& table, std::string_view key, const std::string& name,
+                    std::span<const std::string> receivers);
 /// Reads every [[receiver]] of a scenario's top table.
 void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContext& context);
 
