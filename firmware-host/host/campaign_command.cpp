@@ -95,8 +95,7 @@ int replay_run(const CampaignOptions& options) {
     if (!campaign) return messages.error(campaign.error());
     const auto run = wanted_run(options, campaign->plan);
     if (!run) return messages.error(run.error());
-    const auto asked =
-        read_changed_scenario(campaign->setup.text, campaign->setup.file, campaign->plan.changes_of(*run));
+    const auto asked = read_scenario(campaign->setup.text, campaign->setup.file, campaign->plan.changes_of(*run));
     if (!asked) return messages.error(asked.error());
     const auto scenario = campaign_scenario(*asked);
     if (!scenario) return messages.error(scenario.error());

@@ -85,7 +85,7 @@ public:
 
     Result<void> check(const PlannedRun& run, bool assembled) {
         const auto changes = campaign_.plan.changes_of(run);
-        const auto asked = read_changed_scenario(campaign_.setup.text, campaign_.setup.file, changes);
+        const auto asked = read_scenario(campaign_.setup.text, campaign_.setup.file, changes);
         if (!asked) return fail(at_option(asked.error()));
         const auto scenario = campaign_scenario(*asked);
         if (!scenario) return fail(blamed(scenario.error(), run));

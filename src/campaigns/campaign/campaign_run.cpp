@@ -250,7 +250,7 @@ Result<ResultColumns> result_columns(const Scenario& scenario, const std::vector
 Result<RunResult> run_of_campaign(const CampaignRunSetup& setup, const PlannedRun& run,
                                   const std::vector<ScenarioChange>& changes, const std::atomic<bool>& stop) {
     RunResult result = begun_result(setup, run);
-    const auto asked = read_changed_scenario(setup.text, setup.file, changes);
+    const auto asked = read_scenario(setup.text, setup.file, changes);
     if (!asked) return failed_result(std::move(result), asked.error());
     const auto scenario = campaign_scenario(*asked);
     if (!scenario) return failed_result(std::move(result), scenario.error());

@@ -256,8 +256,8 @@ ScenarioReading read_file_with_mistakes(const std::filesystem::path& file, std::
     return read_with_mistakes(*text, file, changes);
 }
 
-Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
-                                       std::span<const ScenarioChange> changes) {
+Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file,
+                               std::span<const ScenarioChange> changes) {
     ScenarioReading reading = read_with_mistakes(text, file, changes);
     if (reading.mistakes) return fail(*reading.mistakes);
     return std::move(reading.scenario);

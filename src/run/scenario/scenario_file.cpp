@@ -215,10 +215,6 @@ void read_constellation_list(TableReader& table, const char* key, std::vector<Co
         constellations.push_back(static_cast<Constellation>(index));
 }
 
-Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file) {
-    return read_changed_scenario(text, file, {});
-}
-
 Result<Scenario> read_scenario_file(const std::filesystem::path& file) {
     ScenarioReading reading = read_file_with_mistakes(file, {});
     if (reading.mistakes) return fail(*reading.mistakes);

@@ -39,9 +39,6 @@ ScenarioReading read_with_mistakes(std::string_view text, const std::filesystem:
                                    std::span<const ScenarioChange> changes);
 /// The same of a file.
 ScenarioReading read_file_with_mistakes(const std::filesystem::path& file, std::span<const ScenarioChange> changes);
-/// The same, without mistakes.
-Result<Scenario> read_changed_scenario(std::string_view text, const std::filesystem::path& file,
-                                       std::span<const ScenarioChange> changes);
 
 /// Whether a sentence about a scenario is one about a key, or about a table that holds it: of "foo.bar" it is
 /// "foo.bar: is …", "'foo.bar' leads …", "foo: unknown key" and "[foo] has …".
@@ -76,7 +73,9 @@ Result<std::vector<CampaignValue>> parse_campaign_values(std::string_view text);
 /// @param file its name, for messages; paths in the text are relative to its folder
 /// Fails with `input`, or with `outside` where the only mistakes are tables of antennas that cannot be read: one line
 /// per mistake, `FILE:LINE:COLUMN: what was found; what was expected`.
-Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file);
+/// @param changes as of read_with_mistakes()
+Result<Scenario> read_scenario(std::string_view text, const std::filesystem::path& file,
+                               std::span<const ScenarioChange> changes = {});
 Result<Scenario> read_scenario_file(const std::filesystem::path& file);
 
 /// Reads the [trajectory] (and [frame]) of a file that holds nothing else, as `--trajectory FILE.toml` names it.

@@ -16,6 +16,8 @@
 namespace skyloop::inline run {
 namespace {
 
+constexpr std::size_t most_events_looked_at = 10'000;  // what comes every millisecond comes for ever
+
 std::string check_utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
 
 template <class Entry>
@@ -50,9 +52,8 @@ std::optional<std::string> too_early_to_roll_over(const FaultEntry& fault, GpsTi
 
 // Which entries begin before the end, or may: those that a command starts among them.
 std::vector<bool> may_begin(const std::vector<TimelineEntry>& entries, const TimelineSpan& run) {
-    constexpr std::size_t most_looked_at = 10'000;  // what comes every millisecond comes for ever
     std::vector<bool> may = hang_on_the_run(entries);
-    for (const TimelineEvent& event : planned_events(entries, run, most_looked_at))
+    for (const TimelineEvent& event : planned_events(entries, run, most_events_looked_at))
         may[event.entry] = true;
     return may;
 }
@@ -65,8 +66,6 @@ void warn_of_late(std::string_view table, const TimelineEntry& entry, const Time
             "[[{}]] '{}' will not begin: it is due {:g} s after the start of the run, which ends after {:g} s", table,
             entry.name, difference(*begins, run.start).value(), difference(run.end, run.start).value()));
 }
-
-constexpr std::size_t most_events_looked_at = 10'000;  // what comes every millisecond comes for ever
 
 // What is known of the timeline before the run.
 struct KnownTimeline {
@@ -178,6 +177,17 @@ std::string why_no_time(const Probe& probe, double speed, double length) {
                        until, length);
 }
 
+void warn_of_expectations(const Scenario& scenario, GpsTime start, GpsTime end, std::vector<std::string>& warnings) {
+    const KnownTimeline known = known_timeline(scenario, start, end);
+    for (const Expectation& expectation : scenario.expectations) {
+        std::string why;
+        if (expectation.sentence) why = why_too_late(watched(*expectation.sentence), known, start, end);
+        if (expectation.probe)
+            why = why_no_time(*expectation.probe, scenario.run.speed, difference(end, start).value());
+        if (!why.empty()) warnings.push_back(fmt::format("[[expect]] '{}' {}", expectation.title(), why));
+    }
+}
+
 }  // namespace
 
 Result<void> check_timeline(const Scenario& scenario, GpsTime start) {
@@ -205,21 +215,7 @@ std::vector<std::string> timeline_warnings(const Scenario& scenario, GpsTime sta
     const std::vector<bool> may = may_begin(entries, run);
     for (std::size_t i = 0; i < entries.size(); ++i)
         if (!may[i]) warn_of_late(i < scenario.faults.size() ? "fault" : "command", entries[i], run, warnings);
-    for (std::string& warning : expectation_warnings(scenario, start, end))
-        warnings.push_back(std::move(warning));
-    return warnings;
-}
-
-std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime start, GpsTime end) {
-    const KnownTimeline known = known_timeline(scenario, start, end);
-    std::vector<std::string> warnings;
-    for (const Expectation& expectation : scenario.expectations) {
-        std::string why;
-        if (expectation.sentence) why = why_too_late(watched(*expectation.sentence), known, start, end);
-        if (expectation.probe)
-            why = why_no_time(*expectation.probe, scenario.run.speed, difference(end, start).value());
-        if (!why.empty()) warnings.push_back(fmt::format("[[expect]] '{}' {}", expectation.title(), why));
-    }
+    warn_of_expectations(scenario, start, end, warnings);
     return warnings;
 }
 

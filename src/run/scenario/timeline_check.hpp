@@ -13,11 +13,8 @@ namespace skyloop::inline run {
 /// before the start of the run.
 Result<void> check_timeline(const Scenario& scenario, GpsTime start);
 
-/// Entries whose time is behind the end of the run.
+/// Entries whose time is behind the end of the run; and expectations that the end leaves undecided or unmet, whatever
+/// the run brings: of times behind it, and of events that do not come before.
 std::vector<std::string> timeline_warnings(const Scenario& scenario, GpsTime start, GpsTime end);
-
-/// Expectations that the end of the run leaves undecided or unmet, whatever it brings: of times behind it, and of
-/// events that do not come before.
-std::vector<std::string> expectation_warnings(const Scenario& scenario, GpsTime start, GpsTime end);
 
 }  // namespace skyloop::inline run

@@ -122,7 +122,7 @@ values = [1]
 Result<Scenario> changed(const std::string& key, const std::string& value) {
     const auto values = parse_campaign_values(value);
     const std::vector<ScenarioChange> changes{{key, values->at(0)}};
-    return read_changed_scenario(base_text, "c.toml", changes);
+    return read_scenario(base_text, "c.toml", changes);
 }
 std::string change_mistake(const std::string& key, const std::string& value) {
     const auto scenario = changed(key, value);
@@ -175,7 +175,7 @@ TEST(ScenarioChanges, EntriesHaveTheNamesThatMessagesCallThemBy) {
                              "[[fault]]\nkind = \"outage\"\n" + silent;
     const auto changed_to = [&](const std::string& key, const std::string& value) {
         const std::vector<ScenarioChange> changes{{key, parse_campaign_values(value)->at(0)}};
-        return read_changed_scenario(text, "c.toml", changes);
+        return read_scenario(text, "c.toml", changes);
     };
     const auto rates = changed_to("receiver.receiver2.rate_hz", "5");
     ASSERT_TRUE(rates) << rates.error().message;
@@ -192,7 +192,7 @@ TEST(ScenarioChanges, EntriesHaveTheNamesThatMessagesCallThemBy) {
 
 TEST(ScenarioChanges, AListThatIsNotThereIsNotMade) {
     const std::vector<ScenarioChange> changes{{"fault.gap.for_s", parse_campaign_values("2")->at(0)}};
-    const auto scenario = read_changed_scenario("[run]\nduration_s = 10\n", "c.toml", changes);
+    const auto scenario = read_scenario("[run]\nduration_s = 10\n", "c.toml", changes);
     ASSERT_FALSE(scenario);
     EXPECT_THAT(scenario.error().message,
                 StartsWith("c.toml:1:1: 'fault.gap.for_s' leads to no key: the scenario has no fault.gap; expected"));
@@ -201,12 +201,12 @@ TEST(ScenarioChanges, AListThatIsNotThereIsNotMade) {
 
 TEST(ScenarioChanges, TheOneReceiverNeedsNoTable) {
     for (const char* key : {"receiver.0.rate_hz", "receiver.receiver0.rate_hz"}) {
-        const auto changed = read_changed_scenario("", "c.toml", std::vector{*parse_change(key + std::string("=5"))});
+        const auto changed = read_scenario("", "c.toml", std::vector{*parse_change(key + std::string("=5"))});
         ASSERT_TRUE(changed) << changed.error().message;
         ASSERT_EQ(changed->receivers.size(), 1U);
         EXPECT_EQ(changed->receivers[0].rate_hz, 5);
     }
-    EXPECT_FALSE(read_changed_scenario("", "c.toml", std::vector{*parse_change("receiver.1.rate_hz=5")}));
+    EXPECT_FALSE(read_scenario("", "c.toml", std::vector{*parse_change("receiver.1.rate_hz=5")}));
 }
 
 TEST(ScenarioChanges, AreReadFromTheCommandLine) {
@@ -227,7 +227,7 @@ TEST(ScenarioChanges, AKeyTooDeepForTheStackLeadsToNone) {
     for (int i = 0; i < 200000; ++i)
         key += ".a";
     const std::vector<ScenarioChange> changes{{key, parse_campaign_values("2")->at(0)}};
-    const auto scenario = read_changed_scenario("[run]\nduration_s = 10\n", "c.toml", changes);
+    const auto scenario = read_scenario("[run]\nduration_s = 10\n", "c.toml", changes);
     ASSERT_FALSE(scenario);
     EXPECT_THAT(scenario.error().message, StartsWith("c.toml:1:1: 'run.a.a.a."));
     EXPECT_EQ(place_of_key("[" + key + "]", "run.seed"), "run.seed");
@@ -252,7 +252,7 @@ TEST(ScenarioChanges, AWrongValueIsToldWhereTheFileChangesIt) {
 TEST(ScenarioChanges, AnOptionStandsBeforeItsMistake) {
     const auto mistake_of = [](ScenarioChange change, std::string_view text) {
         change.option = "--rate";
-        const auto scenario = read_changed_scenario(text, "c.toml", std::vector{change});
+        const auto scenario = read_scenario(text, "c.toml", std::vector{change});
         return scenario ? "none" : scenario.error().message;
     };
     EXPECT_EQ(mistake_of(*parse_change("receiver.0.rate_hz=0"), ""),
@@ -277,7 +277,7 @@ TEST(ScenarioChanges, AMistakeIsToldOnceAndAtTheParameterThatMadeIt) {
             key + "\"\nvalues = [1]\n";
         const auto one = parse_campaign_values("1")->at(0);
         const std::vector<ScenarioChange> changes{{"run.speed", one}, {key, one}};
-        const auto scenario = read_changed_scenario(text, "c.toml", changes);
+        const auto scenario = read_scenario(text, "c.toml", changes);
         return scenario ? "none" : scenario.error().message;
     };
     EXPECT_THAT(mistake_of("trajectory.at.2"), StartsWith("c.toml:8:7: 'trajectory.at.2' leads to no key: "));
