@@ -24,11 +24,17 @@ void read_angle(TableReader& table, std::string_view key, double& radians, KeyTe
     radians = angle.rad();
 }
 
-PathWish read_driven_waypoints(ShapeReading& r) {
+// speed_mps and vehicle keys of a path that is driven along.
+template <class Wish>
+void read_motion(ShapeReading& r, Wish& wish) {
     read_speed_and_vehicle(r.table, r.vehicle);
-    WaypointWish wish;
     wish.vehicle = r.vehicle;
     wish.heading = r.heading.rad();
+}
+
+PathWish read_driven_waypoints(ShapeReading& r) {
+    WaypointWish wish;
+    read_motion(r, wish);
     read_waypoint_tables(r.table, [&](TableReader& row) {
         Waypoint corner;
         corner.speed = MetresPerSecond(wish.waypoints.empty() ? r.vehicle.along.speed : wish.waypoints.back().speed);
@@ -43,9 +49,7 @@ PathWish read_driven_waypoints(ShapeReading& r) {
 // What laps have in common.
 void read_laps(ShapeReading& r, LapWish& lap) {
     lap.centre = read_spot(r, r.table, "centre", "centre");
-    read_speed_and_vehicle(r.table, r.vehicle);
-    lap.vehicle = r.vehicle;
-    lap.heading = r.heading.rad();
+    read_motion(r, lap);
     r.table.integer("laps", lap.laps, {0, 1e6}, "after which it comes to rest; 0: it never does");
 }
 
@@ -80,9 +84,7 @@ PathWish read_figure_eight(ShapeReading& r) {
 PathWish read_lawnmower(ShapeReading& r) {
     LawnmowerWish wish;
     wish.corner = read_spot(r, r.table, "at", "place");
-    read_speed_and_vehicle(r.table, r.vehicle);
-    wish.vehicle = r.vehicle;
-    wish.heading = r.heading.rad();
+    read_motion(r, wish);
     r.table.number("length_m", wish.length, {0.1, 1e6}, "of the lines");
     r.table.number("spacing_m", wish.spacing, {0.01, 1e5}, "from line to line, each to the right of the one before");
     r.table.integer("lines", wish.lines, {1, 10000}, "how many");
@@ -118,9 +120,7 @@ PathWish read_drive(ShapeReading& r) {
     DriveWish wish;
     r.vehicle = usual_limits(VehicleClass::car);
     wish.centre = read_spot(r, r.table, "centre", "centre");
-    read_speed_and_vehicle(r.table, r.vehicle);
-    wish.vehicle = r.vehicle;
-    wish.heading = r.heading.rad();
+    read_motion(r, wish);
     r.table.number("area_m", wish.area, {1, 1e6}, "how far it drives from the centre, along the streets");
     r.table.number("block_m", wish.block, {1, 1e5}, "from crossing to crossing");
     r.table.number("duration_s", wish.seconds, {1, 1e7}, "about how long it drives");
@@ -214,6 +214,28 @@ void read_turn_keys(TableReader& table, VehicleLimits& vehicle) {
                  {"how far before a waypoint the turn there may begin", "the vehicle's"});
 }
 
+void read_vehicle_keys(TableReader& table, VehicleLimits& vehicle) {
+    std::array<std::string_view, driven_vehicles.size()> names;
+    std::transform(driven_vehicles.begin(), driven_vehicles.end(), names.begin(), vehicle_name);
+    if (const auto kind =
+            table.choice("vehicle", names,
+                         {"which vehicle: it rounds corners, speeds up, leans (docs/paths.md); waypoints without "
+                          "any key of a vehicle run at constant speed from corner to corner",
+                          "multirotor; of drive car"}))
+        vehicle = usual_limits(driven_vehicles.at(*kind));
+    table.number("acceleration_mps2", vehicle.along.acceleration, {1e-3, 500}, {"along the way", "the vehicle's"});
+    table.number("jerk_mps3", vehicle.along.jerk, {1e-3, 1e4},
+                 {"change of the acceleration along the way", "the vehicle's"});
+    read_turn_keys(table, vehicle);
+    table.number("slowest_mps", vehicle.slowest, {0, 12000},
+                 {"speed on the way; what has one cannot stop there", "the vehicle's"});
+    table.number("climb_mps", vehicle.climb, {1e-3, 12000}, {"largest", "the vehicle's"});
+    table.number("sink_mps", vehicle.sink, {1e-3, 12000}, {"largest", "the vehicle's"});
+    Angle steepest = Angle::radians(vehicle.steepest);
+    table.degrees("steepest_deg", steepest, {0.1, 90}, {"slope of the way", "the vehicle's"});
+    vehicle.steepest = steepest.rad();
+}
+
 }  // namespace
 
 std::optional<Eigen::Vector3d> on_plane(TableReader& table, const GeodesicPlane& plane, std::string_view key,
@@ -241,28 +263,6 @@ std::optional<PathWish> read_path_shape(std::size_t kind, ShapeReading reading) 
 }
 
 bool has_dice(std::size_t kind) { return shape_kinds.at(kind).dice; }
-
-void read_vehicle_keys(TableReader& table, VehicleLimits& vehicle) {
-    std::array<std::string_view, driven_vehicles.size()> names;
-    std::transform(driven_vehicles.begin(), driven_vehicles.end(), names.begin(), vehicle_name);
-    if (const auto kind =
-            table.choice("vehicle", names,
-                         {"which vehicle: it rounds corners, speeds up, leans (docs/paths.md); waypoints without "
-                          "any key of a vehicle run at constant speed from corner to corner",
-                          "multirotor; of drive car"}))
-        vehicle = usual_limits(driven_vehicles.at(*kind));
-    table.number("acceleration_mps2", vehicle.along.acceleration, {1e-3, 500}, {"along the way", "the vehicle's"});
-    table.number("jerk_mps3", vehicle.along.jerk, {1e-3, 1e4},
-                 {"change of the acceleration along the way", "the vehicle's"});
-    read_turn_keys(table, vehicle);
-    table.number("slowest_mps", vehicle.slowest, {0, 12000},
-                 {"speed on the way; what has one cannot stop there", "the vehicle's"});
-    table.number("climb_mps", vehicle.climb, {1e-3, 12000}, {"largest", "the vehicle's"});
-    table.number("sink_mps", vehicle.sink, {1e-3, 12000}, {"largest", "the vehicle's"});
-    Angle steepest = Angle::radians(vehicle.steepest);
-    table.degrees("steepest_deg", steepest, {0.1, 90}, {"slope of the way", "the vehicle's"});
-    vehicle.steepest = steepest.rad();
-}
 
 void read_speed_and_vehicle(TableReader& table, VehicleLimits& vehicle) {
     read_vehicle_keys(table, vehicle);

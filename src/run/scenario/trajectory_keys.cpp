@@ -12,6 +12,122 @@
 namespace skyloop::inline run {
 namespace {
 
+void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
+    FixedSettings fixed;
+    fixed.heading = read_heading(table);
+    if (const auto at = places.read_needed(table, "at", {"place", "none"})) fixed.at = *at;
+    trajectory = fixed;
+}
+
+void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
+    CircleSettings circle;
+    circle.heading = read_heading(table);
+    if (const auto centre = places.read_needed(table, "centre", {"centre", "none"})) circle.shape.centre = *centre;
+    table.quantity("radius_m", circle.shape.radius, {0.1, 1e6}, "of the circle");
+    table.quantity("speed_mps", circle.shape.speed, {-12000, 12000},
+                   "along the circle; a negative one runs anticlockwise");
+    table.degrees("start_azimuth_deg", circle.shape.start_azimuth, {-360, 360},
+                  "from the centre to the place at the start, clockwise from north");
+    trajectory = circle;
+}
+
+void read_source_map(TableReader& table, LiveSettings& live) {
+    static constexpr std::array<std::string_view, 5> maps{"source", "tangent", "ardupilot_flat", "px4_azimuthal",
+                                                          "airsim_sphere"};
+    live.origin = table.place(
+        "origin",
+        {"where the local metres of a source begin: latitude, longitude, height above the ellipsoid", "none"});
+    const auto map =
+        table.choice("local_map", maps,
+                     "how a source's local metres lie on the Earth: as it means them, or by another's map", maps[0]);
+    if (map.value_or(0) > 0) live.local_map = local_map_of_name(maps.at(*map));
+}
+
+void read_source_timing(TableReader& table, LiveSettings& live) {
+    table.number("source_rate_hz", live.rate_hz, {0.1, 1000}, "asked of sources that can be asked");
+    table.quantity("delay_s", live.delay, {0, 10}, "the path is this much late, so that slow sources are interpolated");
+    table.quantity("lost_after_s", live.lost_after, {0.1, 1e7}, "silence of the source after which it is lost");
+    table.word("when_lost",
+               {{"hold", LostSource::hold},
+                {"outage", LostSource::outage},
+                {"pause", LostSource::pause},
+                {"stop", LostSource::stop}},
+               live.when_lost, "what then becomes of the run");
+}
+
+void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
+    LiveSettings live;
+    live.heading = read_heading(table);
+    table.text("source", live.source,
+               {"who flies the vehicle: udp-json:29990, flightgear:5503, … (docs/feeds.md)", "none"});
+    live.source_told_at = table.told_at("source");
+    table.needs_one_of({"source"}, "kind \"live\" has no source; expected source = \"udp-json:29990\" or another");
+    table.text("vehicle_id", live.vehicle, {"which one of the source's vehicles", "the first that it sends"});
+    live.at = table.place(
+        "at", {"where the vehicle stands until the source sends: latitude, longitude, height above the ellipsoid",
+               "the run waits for the source"});
+    table.word("clock",
+               {{"realtime", ClockMode::realtime}, {"follow", ClockMode::follow}, {"lock_step", ClockMode::lock_step}},
+               live.clock, "who leads: the wall clock, or the source's clock, or the source step by step");
+    table.word("sea_level", {{"geoid", false}, {"ellipsoid", true}}, live.sea_is_ellipsoid,
+               "what the source's heights above the sea count from");
+    read_source_map(table, live);
+    table.boolean("filtered", live.filtered, "places that a receiver measured (nmea, ubx, gpsd) go through a filter");
+    read_source_timing(table, live);
+    if (live.source.starts_with("ardupilot-json:") && !live.origin)
+        places.warn(live.source +
+                    ": [trajectory] has no origin; places in metres from the physics are refused, and only those with "
+                    "latitude, longitude and altitude are taken: expected origin = SITL's --home");
+    trajectory = live;
+}
+
+void read_vehicle_class(TableReader& table, FileSettings& file) {
+    if (const auto index = table.choice("vehicle", track_vehicle_names(),
+                                        {"how it stands where the rows tell no attitude", "upright"}))
+        file.vehicle = static_cast<VehicleClass>(*index);
+}
+
+void read_file_track(TableReader& table, PlaceReader& places, const std::filesystem::path& folder,
+                     TrajectorySettings& trajectory) {
+    FileSettings file;
+    file.heading_given = table.has("heading_deg");
+    file.heading = read_heading(table);
+    table.file_path("path", folder, file.path,
+                    {"the recorded track beside the scenario's file: CSV, GPX, KML, NMEA, IGC and others", "none"});
+    file.path_told_at = table.told_at("path");
+    table.needs_one_of({"path"}, "kind \"file\" has no path; expected path = \"track.csv\"");
+    table.word("time", {{"run", false}, {"recorded", true}}, file.keeps_time,
+               "the track begins with the run, or keeps the times it was recorded at");
+    table.quantity("gap_s", file.gap, {1e-3, 1e7}, "stretches without rows longer than this are gaps, and reported");
+    file.origin = places.read(
+        table, "origin", {"where the local metres of a track begin, and the ground of its heights above it", "none"});
+    table.word("gap",
+               {{"bridge", GapPolicy::bridge},
+                {"hold", GapPolicy::hold},
+                {"compress", GapPolicy::compress},
+                {"outage", GapPolicy::outage}},
+               file.gap_policy,
+               "what becomes of a gap: a way across it; a stand and a jump; its time is left out; a way across it "
+               "without signals");
+    table.quantity("start_delay_s", file.playback.delay, {0, 1e7}, "the vehicle stands at its beginning for so long");
+    table.quantity("skip_s", file.playback.skip, {0, 1e9}, "part of the track that is left out at its beginning");
+    table.number("time_scale", file.playback.time_scale, {1e-3, 1e3}, "playback speed: 2 is twice as fast");
+    table.word("end", {{"hold", EndOfPath::hold}, {"stop", EndOfPath::stop}, {"loop", EndOfPath::loop}},
+               file.playback.end, "after the last row: the vehicle stands there, the run ends, or the track repeats");
+    read_vehicle_class(table, file);
+    table.word(
+        "smooth", {{"none", Smoothing::none}, {"noise", Smoothing::noise}, {"sensor", Smoothing::sensor}},
+        file.smoothing,
+        "move the rows onto a smooth path: by the noise that they show, or as positions of a satellite receiver");
+    table.quantity("speed_mps", file.route_speed, {1e-2, 12000},
+                   {"along the way of a track without times", "the plan's or the vehicle's"});
+    file.route_told = table.has("speed_mps") || table.has("route_tolerance_m");
+    table.quantity("route_tolerance_m", file.route_tolerance, {0, 1e5},
+                   "of a file without times: places this near to the way between the others are left out, and the "
+                   "others passed as near");
+    trajectory = file;
+}
+
 // What a kind's reader may need.
 struct KindReading {
     TableReader& table;
@@ -54,36 +170,6 @@ void read_kind(const KindReading& reading) {
     if (*kind < others) return kinds[*kind].read(reading);
     if (*kind + 1 == names.size()) return read_sequence(reading.table, reading.places, reading.trajectory);
     read_generated(reading.table, reading.places, *kind - others + 1, reading.trajectory);
-}
-
-void read_source_map(TableReader& table, LiveSettings& live) {
-    static constexpr std::array<std::string_view, 5> maps{"source", "tangent", "ardupilot_flat", "px4_azimuthal",
-                                                          "airsim_sphere"};
-    live.origin = table.place(
-        "origin",
-        {"where the local metres of a source begin: latitude, longitude, height above the ellipsoid", "none"});
-    const auto map =
-        table.choice("local_map", maps,
-                     "how a source's local metres lie on the Earth: as it means them, or by another's map", maps[0]);
-    if (map.value_or(0) > 0) live.local_map = local_map_of_name(maps.at(*map));
-}
-
-void read_source_timing(TableReader& table, LiveSettings& live) {
-    table.number("source_rate_hz", live.rate_hz, {0.1, 1000}, "asked of sources that can be asked");
-    table.quantity("delay_s", live.delay, {0, 10}, "the path is this much late, so that slow sources are interpolated");
-    table.quantity("lost_after_s", live.lost_after, {0.1, 1e7}, "silence of the source after which it is lost");
-    table.word("when_lost",
-               {{"hold", LostSource::hold},
-                {"outage", LostSource::outage},
-                {"pause", LostSource::pause},
-                {"stop", LostSource::stop}},
-               live.when_lost, "what then becomes of the run");
-}
-
-void read_vehicle_class(TableReader& table, FileSettings& file) {
-    if (const auto index = table.choice("vehicle", track_vehicle_names(),
-                                        {"how it stands where the rows tell no attitude", "upright"}))
-        file.vehicle = static_cast<VehicleClass>(*index);
 }
 
 }  // namespace
@@ -167,13 +253,6 @@ Angle read_heading(TableReader& table) {
     return heading;
 }
 
-void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
-    FixedSettings fixed;
-    fixed.heading = read_heading(table);
-    if (const auto at = places.read_needed(table, "at", {"place", "none"})) fixed.at = *at;
-    trajectory = fixed;
-}
-
 void read_waypoint_motion(TableReader& row, Waypoint& corner) {
     row.quantity("speed_mps", corner.speed, {1e-3, 12000},
                  {"from here to the next corner", "the last one given, at first 10"});
@@ -188,85 +267,6 @@ void read_waypoint_tables(TableReader& table, const std::function<void(TableRead
     if (corners < fewest_corners)
         table.mistake_here(
             fmt::format("kind \"waypoints\" has {} waypoints; expected two or more [[trajectory.waypoint]]", corners));
-}
-
-void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
-    CircleSettings circle;
-    circle.heading = read_heading(table);
-    if (const auto centre = places.read_needed(table, "centre", {"centre", "none"})) circle.shape.centre = *centre;
-    table.quantity("radius_m", circle.shape.radius, {0.1, 1e6}, "of the circle");
-    table.quantity("speed_mps", circle.shape.speed, {-12000, 12000},
-                   "along the circle; a negative one runs anticlockwise");
-    table.degrees("start_azimuth_deg", circle.shape.start_azimuth, {-360, 360},
-                  "from the centre to the place at the start, clockwise from north");
-    trajectory = circle;
-}
-
-void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory) {
-    LiveSettings live;
-    live.heading = read_heading(table);
-    table.text("source", live.source,
-               {"who flies the vehicle: udp-json:29990, flightgear:5503, … (docs/feeds.md)", "none"});
-    live.source_told_at = table.told_at("source");
-    table.needs_one_of({"source"}, "kind \"live\" has no source; expected source = \"udp-json:29990\" or another");
-    table.text("vehicle_id", live.vehicle, {"which one of the source's vehicles", "the first that it sends"});
-    live.at = table.place(
-        "at", {"where the vehicle stands until the source sends: latitude, longitude, height above the ellipsoid",
-               "the run waits for the source"});
-    table.word("clock",
-               {{"realtime", ClockMode::realtime}, {"follow", ClockMode::follow}, {"lock_step", ClockMode::lock_step}},
-               live.clock, "who leads: the wall clock, or the source's clock, or the source step by step");
-    table.word("sea_level", {{"geoid", false}, {"ellipsoid", true}}, live.sea_is_ellipsoid,
-               "what the source's heights above the sea count from");
-    read_source_map(table, live);
-    table.boolean("filtered", live.filtered, "places that a receiver measured (nmea, ubx, gpsd) go through a filter");
-    read_source_timing(table, live);
-    if (live.source.starts_with("ardupilot-json:") && !live.origin)
-        places.warn(live.source +
-                    ": [trajectory] has no origin; places in metres from the physics are refused, and only those with "
-                    "latitude, longitude and altitude are taken: expected origin = SITL's --home");
-    trajectory = live;
-}
-
-void read_file_track(TableReader& table, PlaceReader& places, const std::filesystem::path& folder,
-                     TrajectorySettings& trajectory) {
-    FileSettings file;
-    file.heading_given = table.has("heading_deg");
-    file.heading = read_heading(table);
-    table.file_path("path", folder, file.path,
-                    {"the recorded track beside the scenario's file: CSV, GPX, KML, NMEA, IGC and others", "none"});
-    file.path_told_at = table.told_at("path");
-    table.needs_one_of({"path"}, "kind \"file\" has no path; expected path = \"track.csv\"");
-    table.word("time", {{"run", false}, {"recorded", true}}, file.keeps_time,
-               "the track begins with the run, or keeps the times it was recorded at");
-    table.quantity("gap_s", file.gap, {1e-3, 1e7}, "stretches without rows longer than this are gaps, and reported");
-    file.origin = places.read(
-        table, "origin", {"where the local metres of a track begin, and the ground of its heights above it", "none"});
-    table.word("gap",
-               {{"bridge", GapPolicy::bridge},
-                {"hold", GapPolicy::hold},
-                {"compress", GapPolicy::compress},
-                {"outage", GapPolicy::outage}},
-               file.gap_policy,
-               "what becomes of a gap: a way across it; a stand and a jump; its time is left out; a way across it "
-               "without signals");
-    table.quantity("start_delay_s", file.playback.delay, {0, 1e7}, "the vehicle stands at its beginning for so long");
-    table.quantity("skip_s", file.playback.skip, {0, 1e9}, "part of the track that is left out at its beginning");
-    table.number("time_scale", file.playback.time_scale, {1e-3, 1e3}, "playback speed: 2 is twice as fast");
-    table.word("end", {{"hold", EndOfPath::hold}, {"stop", EndOfPath::stop}, {"loop", EndOfPath::loop}},
-               file.playback.end, "after the last row: the vehicle stands there, the run ends, or the track repeats");
-    read_vehicle_class(table, file);
-    table.word(
-        "smooth", {{"none", Smoothing::none}, {"noise", Smoothing::noise}, {"sensor", Smoothing::sensor}},
-        file.smoothing,
-        "move the rows onto a smooth path: by the noise that they show, or as positions of a satellite receiver");
-    table.quantity("speed_mps", file.route_speed, {1e-2, 12000},
-                   {"along the way of a track without times", "the plan's or the vehicle's"});
-    file.route_told = table.has("speed_mps") || table.has("route_tolerance_m");
-    table.quantity("route_tolerance_m", file.route_tolerance, {0, 1e5},
-                   "of a file without times: places this near to the way between the others are left out, and the "
-                   "others passed as near");
-    trajectory = file;
 }
 
 }  // namespace skyloop::inline run

@@ -1,7 +1,6 @@
 // The parts of [trajectory]: one function for each group of kinds.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -70,9 +69,7 @@ std::optional<PathWish> read_path_shape(std::size_t kind, ShapeReading reading);
 // Whether its path has dice, and so a seed.
 bool has_dice(std::size_t kind);
 
-// vehicle, and what it can do: only the keys of moving along a way.
-void read_vehicle_keys(TableReader& table, VehicleLimits& vehicle);
-// speed_mps and vehicle keys
+// speed_mps; vehicle, and what it can do: only the keys of moving along a way
 void read_speed_and_vehicle(TableReader& table, VehicleLimits& vehicle);
 
 // A whole path of one kind, and "sequence".
@@ -82,15 +79,10 @@ void read_sequence(TableReader& table, PlaceReader& places, TrajectorySettings& 
 // loop and start_delay_s; then plans the path, and a path that there is not is a mistake of the table.
 void finish_generated(TableReader& table, GeneratedPath path, Angle heading, TrajectorySettings& trajectory);
 
-void read_fixed(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
 // speed_mps and hold_s of a corner whose place has been read
 void read_waypoint_motion(TableReader& row, Waypoint& corner);
 // Every [[waypoint]], two at least.
 void read_waypoint_tables(TableReader& table, const std::function<void(TableReader&)>& read_corner);
 void read_waypoints(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
-void read_circle(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
-void read_live(TableReader& table, PlaceReader& places, TrajectorySettings& trajectory);
-void read_file_track(TableReader& table, PlaceReader& places, const std::filesystem::path& folder,
-                     TrajectorySettings& trajectory);
 
 }  // namespace skyloop::inline run
