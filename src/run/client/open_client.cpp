@@ -16,6 +16,7 @@
 #include "run/client/scripted_client.hpp"
 
 namespace skyloop::inline run {
+namespace {
 
 /// Asks for MON-VER at 9600 bit/s and waits for it for ever, switches NAV-PVT on once, and takes each NAV-PVT whose
 /// fix type is one. Silence, old positions, accuracies and times are nothing to it.
@@ -43,11 +44,7 @@ protected:
     void pass_time() override {}
 };
 
-namespace {
-
 constexpr Nanoseconds start_up_time = std::chrono::milliseconds(100);  // from its power to its first message
-
-}  // namespace
 
 void NaiveUbxClient::pass_time() {
     if (asked_ || now() - begun_at_ < start_up_time) return;
@@ -76,8 +73,6 @@ void NaiveNmeaClient::hear(const StreamPiece& piece) {
     if (const auto* gga = std::get_if<Gga>(&*message))
         believe(gga->position.has_value(), gga->position ? "there is a position" : "there is no position");
 }
-
-namespace {
 
 constexpr std::array<std::string_view, 4> known_clients{"careful-ubx", "naive-ubx", "careful-nmea", "naive-nmea"};
 constexpr std::string_view client_scheme = "client:";

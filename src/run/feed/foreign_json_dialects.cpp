@@ -19,9 +19,10 @@
 #include "detail/motion_filter.hpp"
 
 namespace skyloop::inline run {
+namespace {
 
 // A finite number; nothing when it is not there or anything else.
-inline std::optional<double> source_json_number(const nlohmann::json& object, std::string_view key) {
+std::optional<double> source_json_number(const nlohmann::json& object, std::string_view key) {
     const auto found = object.find(key);
     if (found == object.end() || !found->is_number()) return std::nullopt;
     const double value = found->get<double>();
@@ -29,7 +30,7 @@ inline std::optional<double> source_json_number(const nlohmann::json& object, st
 }
 
 // Three finite numbers.
-inline std::optional<Eigen::Vector3d> source_json_triple(const nlohmann::json& object, std::string_view key) {
+std::optional<Eigen::Vector3d> source_json_triple(const nlohmann::json& object, std::string_view key) {
     const auto found = object.find(key);
     if (found == object.end() || !found->is_array() || found->size() != 3) return std::nullopt;
     Eigen::Vector3d triple;
@@ -41,12 +42,10 @@ inline std::optional<Eigen::Vector3d> source_json_triple(const nlohmann::json& o
 }
 
 // Empty when it is not there or no text.
-inline std::string source_json_text(const nlohmann::json& object, std::string_view key) {
+std::string source_json_text(const nlohmann::json& object, std::string_view key) {
     const auto found = object.find(key);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
-
-namespace {
 
 class ArdupilotJsonDialect : public LineSource {
 public:

@@ -12,8 +12,6 @@
 namespace skyloop::inline run {
 namespace {
 
-constexpr double generic_foot_m = 0.3048;
-
 // The numbers of a line by what they mean, whatever order they came in.
 struct LineColumn {
     enum : std::size_t { time_s, latitude, longitude, height_ft, north_fps, east_fps, down_fps, roll, pitch, yaw };
@@ -25,10 +23,10 @@ SourcePose pose_of_line(const LineNumbers& numbers, const std::optional<Attitude
     SourcePose pose;
     pose.latitude_deg = numbers[LineColumn::latitude];
     pose.longitude_deg = numbers[LineColumn::longitude];
-    pose.height_m = numbers[LineColumn::height_ft] * generic_foot_m;
+    pose.height_m = numbers[LineColumn::height_ft] * metres_per_foot;
     pose.velocity_ned =
         Eigen::Vector3d(numbers[LineColumn::north_fps], numbers[LineColumn::east_fps], numbers[LineColumn::down_fps]) *
-        generic_foot_m;
+        metres_per_foot;
     pose.attitude = attitude;
     return pose;
 }

@@ -20,6 +20,7 @@
 #include "run/feed/mavlink_component.hpp"
 
 namespace skyloop::inline run {
+namespace {
 
 // Cuts bytes into frames. Frames of messages that are not known are passed over by their length where another frame or
 // nothing follows them; anything else is searched byte by byte. State: at most the beginning of one frame.
@@ -65,8 +66,6 @@ private:
     std::uint64_t frames_ = 0;
     std::size_t broken_ = 0;
 };
-
-namespace {
 
 constexpr std::uint8_t no_autopilot = 8;             // MAV_AUTOPILOT_INVALID: ground stations, gimbals
 constexpr std::uint8_t onboard_controller = 18;      // MAV_TYPE_ONBOARD_CONTROLLER

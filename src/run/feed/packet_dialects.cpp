@@ -71,7 +71,6 @@ std::unique_ptr<FeedDialect> make_betaflight_dialect(const FeedContext& context)
 
 namespace {
 
-constexpr double foot_m = 0.3048;
 constexpr std::size_t fdm_size_v24 = 408, fdm_size_v25 = 552;
 constexpr std::size_t fdm_time_v24 = 356, fdm_time_v25 = 500;
 
@@ -191,7 +190,7 @@ private:
         pose.attitude = attitude_of_radians(angles.x(), angles.y(), angles.z());
         // Rates that are all zero are those of a sender that has none.
         if (pose.attitude && !rates.isZero(0)) pose.turn_rate = body_rates(angles, rates);
-        pose.velocity_ned = three_floats(bytes, 76) * foot_m;
+        pose.velocity_ned = three_floats(bytes, 76) * metres_per_foot;
         return pose;
     }
 

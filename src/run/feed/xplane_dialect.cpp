@@ -15,7 +15,6 @@
 namespace skyloop::inline run {
 namespace {
 
-constexpr double xplane_foot_m = 0.3048;
 constexpr std::size_t xplane_head_size = 5;
 
 // What follows the head of RPOS. Axes of the velocity: east, up, south.
@@ -222,7 +221,7 @@ private:
         SourcePose pose;
         pose.latitude_deg = row.values[0];
         pose.longitude_deg = row.values[1];
-        pose.height_m = row.values[2] * xplane_foot_m;
+        pose.height_m = row.values[2] * metres_per_foot;
         pose.attitude = attitude_;
         pose.velocity_ned = velocity_;
         SampleOr sample = sample_of(pose, context_);

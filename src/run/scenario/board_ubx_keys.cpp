@@ -16,6 +16,7 @@ namespace {
 
 using firmware::BoardProfile;
 using firmware::ConfigKey;
+using firmware::ConfigType;
 using firmware::LegacyAnswer;
 
 struct MessageNames {
@@ -104,9 +105,6 @@ void read_absent_keys(TableReader& config, BoardProfile& board) {
                                                  did_you_mean(pattern, config_item_names())));
     }
 }
-
-using firmware::ConfigKey;
-using firmware::ConfigType;
 
 // The least and the most that the bytes of an item hold, as far as TOML can write them.
 NumberRange range_of(const ConfigKey& key) {

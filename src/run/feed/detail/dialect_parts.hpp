@@ -33,6 +33,8 @@ std::unique_ptr<FeedDialect> make_px4_dialect(const FeedContext& context);
 std::unique_ptr<FeedDialect> make_ubx_dialect(const FeedContext& context);
 std::unique_ptr<FeedDialect> make_xplane_dialect(const FeedContext& context);
 
+inline constexpr double metres_per_foot = 0.3048;
+
 // A pose in latitude and longitude, as most sources tell it.
 struct SourcePose {
     double latitude_deg = 0, longitude_deg = 0;
