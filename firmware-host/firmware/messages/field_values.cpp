@@ -212,6 +212,11 @@ bool takes_b1c(const ConfigStore& config) {
            !config.flag(signal_bds_b1i);
 }
 
+std::vector<Bytes> made_by(std::span<const UbxMaker> makers, UbxMessageId message, const ReportContext& context) {
+    const auto row = std::ranges::find(makers, message, &UbxMaker::id);
+    return row == makers.end() ? std::vector<Bytes>() : row->make(context);
+}
+
 bool direction_known(const SatelliteStatus& satellite, const NavigationState& state) {
     return state.position_known && (satellite.azimuth.rad() != 0 || satellite.elevation.rad() != 0);
 }

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 #include "base/time/utc_time.hpp"
@@ -124,11 +126,31 @@ inline bool almanac_known(const NavigationState& state) {
     return state.time.leap_seconds && state.time.leap_source != Constellation::glonass;
 }
 
+/// A message of the epoch that tells its time of week so far, and nothing else.
+template <class Message>
+Message stamped(const ReportContext& context) {
+    Message m;
+    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    return m;
+}
+
 /// One frame as a list.
 template <class Message>
 std::vector<Bytes> ubx_frames_of(const Message& message) {
     return {encode_frame(message)};
 }
+
+/// A row of the tables that say which function makes which UBX message.
+struct UbxMaker {
+    UbxMessageId id;
+    std::vector<Bytes> (*make)(const ReportContext&);
+};
+/// The row of a function that returns the one message to be sent.
+template <auto Make>
+inline constexpr UbxMaker maker{std::invoke_result_t<decltype(Make), const ReportContext&>::message_id,
+                                [](const ReportContext& context) { return ubx_frames_of(Make(context)); }};
+/// Empty for a message that has no row.
+std::vector<Bytes> made_by(std::span<const UbxMaker> makers, UbxMessageId message, const ReportContext& context);
 
 /// A fix of now, within the user's limits, from satellites.
 inline bool has_solution(const NavigationState& state) {

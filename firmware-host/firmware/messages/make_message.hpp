@@ -77,9 +77,6 @@ std::int32_t course_field(const NavigationState& state);
 /// 1 σ of it, 1e-5 deg, 180° at most and while it is frozen.
 std::uint32_t heading_accuracy_field(const NavigationState& state);
 
-/// NAV-SIG.
-std::vector<Bytes> make_signal_message(const ReportContext& context);
-
 /// Ascending by system and number, at most as many as a message can count.
 std::vector<SatelliteStatus> sorted_satellites(const Fix& fix);
 
@@ -97,8 +94,6 @@ std::uint8_t signal_quality(const Observation& observation);
 
 /// MON-HW, HW2, HW3, RF and SPAN. Empty for any other.
 std::vector<Bytes> make_hardware_message(UbxMessageId message, const ReportContext& context);
-/// MON-COMMS, TXBUF, RXBUF, IO and MSGPP. Empty for any other.
-std::vector<Bytes> make_port_message(UbxMessageId message, const ReportContext& context);
 
 /// True for firmware of the high-precision line (FWVER=HPG): two front ends, and its own numbers for ports.
 inline bool is_high_precision(const BoardProfile& board) {

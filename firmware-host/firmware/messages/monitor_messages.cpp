@@ -134,29 +134,6 @@ SecSiglog security_log(const ReportContext& context) {
     return m;
 }
 
-std::vector<Bytes> make_identity_message(UbxMessageId message, const ReportContext& context) {
-    if (message == MonVer::message_id) return ubx_frames_of(version(context));
-    if (message == MonGnss::message_id) return ubx_frames_of(systems(context));
-    if (message == MonSys::message_id) return ubx_frames_of(system_load(context));
-    if (message == MonPatch::message_id) return ubx_frames_of(MonPatch{});
-    if (message == MonRxr::message_id) return ubx_frames_of(MonRxr{1});
-    if (message == SecUniqid::message_id) return ubx_frames_of(unique_id(context));
-    if (message == SecSig1::message_id) return signal_security(context);
-    if (message == SecSiglog::message_id) return ubx_frames_of(security_log(context));
-    return {};
-}
-
-}  // namespace
-
-std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContext& context) {
-    std::vector<Bytes> frames = make_identity_message(message, context);
-    if (frames.empty()) frames = make_hardware_message(message, context);
-    if (frames.empty()) frames = make_port_message(message, context);
-    return frames;
-}
-
-namespace {
-
 constexpr std::size_t port_slots = 6;  // DDC, UART1, UART2, USB, SPI, none
 
 std::size_t port_slot(const PortStatus& port) { return static_cast<std::size_t>(port.id); }
@@ -239,16 +216,30 @@ MonMsgpp messages_by_port(const ReportContext& context) {
     return m;
 }
 
+// What arrives is taken at once: the receive buffers are empty.
+MonRxbuf receive_buffers(const ReportContext&) { return {}; }
+MonPatch patches(const ReportContext&) { return {}; }
+MonRxr awake(const ReportContext&) { return {1}; }
+
+constexpr UbxMaker monitor_makers[] = {maker<version>,
+                                       maker<systems>,
+                                       maker<system_load>,
+                                       maker<patches>,
+                                       maker<awake>,
+                                       maker<unique_id>,
+                                       {SecSig1::message_id, signal_security},
+                                       maker<security_log>,
+                                       maker<communications>,
+                                       maker<transmit_buffers>,
+                                       maker<receive_buffers>,
+                                       maker<input_output>,
+                                       maker<messages_by_port>};
+
 }  // namespace
 
-std::vector<Bytes> make_port_message(UbxMessageId message, const ReportContext& context) {
-    if (message == MonComms::message_id) return ubx_frames_of(communications(context));
-    if (message == MonTxbuf::message_id) return ubx_frames_of(transmit_buffers(context));
-    // What arrives is taken at once: the receive buffers are empty.
-    if (message == MonRxbuf::message_id) return ubx_frames_of(MonRxbuf{});
-    if (message == MonIo::message_id) return ubx_frames_of(input_output(context));
-    if (message == MonMsgpp::message_id) return ubx_frames_of(messages_by_port(context));
-    return {};
+std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContext& context) {
+    std::vector<Bytes> frames = made_by(monitor_makers, message, context);
+    return frames.empty() ? make_hardware_message(message, context) : frames;
 }
 
 }  // namespace skyloop::firmware

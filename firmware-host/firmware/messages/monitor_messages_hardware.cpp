@@ -142,15 +142,13 @@ MonSpan spectra(const ReportContext& context) {
     return m;
 }
 
+constexpr UbxMaker hardware_makers[] = {
+    {MonHw::message_id, hardware_message}, maker<front_end>, maker<pins>, maker<radio>, maker<spectra>};
+
 }  // namespace
 
 std::vector<Bytes> make_hardware_message(UbxMessageId message, const ReportContext& context) {
-    if (message == MonHw::message_id) return hardware_message(context);
-    if (message == MonHw2::message_id) return ubx_frames_of(front_end(context));
-    if (message == MonHw3::message_id) return ubx_frames_of(pins(context));
-    if (message == MonRf::message_id) return ubx_frames_of(radio(context));
-    if (message == MonSpan::message_id) return ubx_frames_of(spectra(context));
-    return {};
+    return made_by(hardware_makers, message, context);
 }
 
 }  // namespace skyloop::firmware

@@ -90,8 +90,7 @@ void put_motion(const NavigationState& state, NavPvt& pvt) {
 NavPvt navigation_pvt(const ReportContext& context) {
     const NavigationState& state = context.state;
     const Fix& fix = state.epoch.fix;
-    NavPvt pvt;
-    pvt.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto pvt = stamped<NavPvt>(context);
     put_time(context, pvt);
     pvt.fix_type = fix_type_code(fix);
     pvt.flags = static_cast<std::uint8_t>((state.fix_ok ? 1 : 0) | (is_differential(fix) ? 2 : 0) |
@@ -135,8 +134,7 @@ bool place_is_valid(const ReportContext& context) {
 NavHpposllh navigation_hpposllh(const ReportContext& context) {
     const NavigationState& state = context.state;
     const Fix& fix = state.epoch.fix;
-    NavHpposllh m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavHpposllh>(context);
     m.flags = place_is_valid(context) ? 0 : 1;
     m.h_msl = unknown_h_msl;
     m.h_acc = m.v_acc = unknown_accuracy;
@@ -191,8 +189,7 @@ NavPosecef navigation_posecef(const ReportContext& context) {
 }
 
 NavHpposecef navigation_hpposecef(const ReportContext& context) {
-    NavHpposecef m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavHpposecef>(context);
     const Eigen::Vector3d place = earth_fixed(context.state);
     for (std::size_t i = 0; i < 3; ++i) {
         const SplitValue value = split_value(place[static_cast<Eigen::Index>(i)] * 1e4, 100);
@@ -211,8 +208,7 @@ NavVelecef navigation_velecef(const ReportContext& context) {
 
 NavVelned navigation_velned(const ReportContext& context) {
     const NavigationState& state = context.state;
-    NavVelned m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavVelned>(context);
     m.s_acc = speed_accuracy_cm(state);
     m.c_acc = unknown_heading;
     if (!estimates_known(state)) return m;
@@ -257,8 +253,7 @@ NavStatus navigation_status(const ReportContext& context) {
     const NavigationState& state = context.state;
     const Fix& fix = state.epoch.fix;
     const bool solved = fix.type != FixType::none;
-    NavStatus m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavStatus>(context);
     m.gps_fix = fix_type_code(fix);
     m.flags = static_cast<std::uint8_t>((solved ? 0xD0 : 0x40) | solution_flags(state));
     m.fix_stat = static_cast<std::uint8_t>((is_differential(fix) ? 1 : 0) | (carrier_solution(fix) != 0 ? 2 : 0));
@@ -284,33 +279,15 @@ NavDop navigation_dop(const ReportContext& context) {
             dop_field(fix.dop.edop, place)};
 }
 
+constexpr UbxMaker solution_makers[] = {
+    maker<navigation_pvt>,       maker<navigation_posllh>, maker<navigation_posecef>, maker<navigation_hpposllh>,
+    maker<navigation_hpposecef>, maker<navigation_velned>, maker<navigation_velecef>, maker<navigation_sol>,
+    maker<navigation_status>,    maker<navigation_dop>};
+
 }  // namespace
 
 std::vector<Bytes> make_solution_message(UbxMessageId message, const ReportContext& context) {
-    switch (message.id) {
-        case NavPvt::message_id.id:
-            return ubx_frames_of(navigation_pvt(context));
-        case NavPosllh::message_id.id:
-            return ubx_frames_of(navigation_posllh(context));
-        case NavPosecef::message_id.id:
-            return ubx_frames_of(navigation_posecef(context));
-        case NavHpposllh::message_id.id:
-            return ubx_frames_of(navigation_hpposllh(context));
-        case NavHpposecef::message_id.id:
-            return ubx_frames_of(navigation_hpposecef(context));
-        case NavVelned::message_id.id:
-            return ubx_frames_of(navigation_velned(context));
-        case NavVelecef::message_id.id:
-            return ubx_frames_of(navigation_velecef(context));
-        case NavSol::message_id.id:
-            return ubx_frames_of(navigation_sol(context));
-        case NavStatus::message_id.id:
-            return ubx_frames_of(navigation_status(context));
-        case NavDop::message_id.id:
-            return ubx_frames_of(navigation_dop(context));
-        default:
-            return {};
-    }
+    return made_by(solution_makers, message, context);
 }
 
 }  // namespace skyloop::firmware

@@ -21,8 +21,6 @@ constexpr std::uint32_t use_ana = 0x10230001;
 // A course that is frozen says nothing of the motion.
 constexpr std::uint32_t half_turn = 18000000;  // 1e-5 deg
 
-std::uint32_t service_tow(const ReportContext& context) { return epoch_time(reported_time(context).time).i_tow; }
-
 std::vector<SatelliteStatus> solved_satellites(const Fix& fix) {
     std::vector<SatelliteStatus> used;
     std::copy_if(fix.satellites.begin(), fix.satellites.end(), std::back_inserter(used),
@@ -55,8 +53,7 @@ void put_round_covariance(const Fix& fix, NavCov& m) {
 NavCov solution_covariance(const ReportContext& context) {
     constexpr double unknown_m = 3750e3, unknown_mps = 20;
     const Fix& fix = context.state.epoch.fix;
-    NavCov m;
-    m.i_tow = service_tow(context);
+    auto m = stamped<NavCov>(context);
     m.pos_cov_valid = m.vel_cov_valid = 1;
     m.pos_cov = round_covariance(unknown_m * unknown_m, unknown_m * unknown_m);
     m.vel_cov = round_covariance(unknown_mps * unknown_mps, unknown_mps * unknown_mps);
@@ -84,8 +81,7 @@ NavCov solution_covariance(const ReportContext& context) {
 
 NavEell ellipse_message(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
-    NavEell m;
-    m.i_tow = service_tow(context);
+    auto m = stamped<NavEell>(context);
     m.major = m.minor = unknown_accuracy;
     const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
     if (!fix.has_position() || !ellipse) return m;
@@ -97,8 +93,7 @@ NavEell ellipse_message(const ReportContext& context) {
 
 NavOdo odometer(const ReportContext& context) {
     const NavigationState& state = context.state;
-    NavOdo m;
-    m.i_tow = service_tow(context);
+    auto m = stamped<NavOdo>(context);
     m.distance = field<std::uint32_t>(state.odometer_m);
     m.total_distance = field<std::uint32_t>(state.odometer_total_m);
     m.distance_std = field<std::uint32_t>(state.odometer_deviation_m);
@@ -142,8 +137,7 @@ std::uint32_t relative_flags(const NavigationState& state, const std::optional<B
 }
 
 NavRelposned0 relative_position_m8(const ReportContext& context, const std::optional<Baseline>& baseline) {
-    NavRelposned0 m;
-    m.i_tow = service_tow(context);
+    auto m = stamped<NavRelposned0>(context);
     m.flags = relative_flags(context.state, baseline);
     if (!baseline) return m;
     const RelativePosition& relative = baseline->vector;
@@ -186,8 +180,7 @@ NavRelposned relative_position(const ReportContext& context) {
 
 NavSvin survey(const ReportContext& context) {
     const std::optional<BaseSurvey>& survey = context.state.survey;
-    NavSvin m;
-    m.i_tow = service_tow(context);
+    auto m = stamped<NavSvin>(context);
     if (!survey) return m;
     m.valid = survey->done() ? 1 : 0;
     m.active = survey->done() ? 0 : 1;
@@ -208,8 +201,7 @@ NavSvin survey(const ReportContext& context) {
 NavDgps differential(const ReportContext& context) {
     constexpr std::int32_t no_age = 999999;  // of a captured receiver without corrections
     const NavigationState& state = context.state;
-    NavDgps m;
-    m.i_tow = service_tow(context);
+    auto m = stamped<NavDgps>(context);
     m.age = state.corrections.age ? field<std::int32_t>(state.corrections.age->value() * 1e3) : no_age;
     m.base_id = field<std::int16_t>(state.corrections.station.value_or(0));
     if (state.corrections.state == CorrectionState::none) return m;
@@ -230,13 +222,12 @@ NavDgps differential(const ReportContext& context) {
 // Of services that no emulated receiver has in use: the time, and zeros.
 template <class Message>
 Message service_message(const ReportContext& context) {
-    Message m;
-    m.i_tow = service_tow(context);
+    auto m = stamped<Message>(context);
     return m;
 }
 
 NavGeofence fences(const ReportContext& context) {
-    NavGeofence m = service_message<NavGeofence>(context);
+    auto m = stamped<NavGeofence>(context);
     const std::vector<Fence> fences = fences_of(context.config, context.state);
     const bool reliable = context.state.epoch.fix.has_position() && context.state.fix_ok;
     m.status = !fences.empty() && reliable ? 1 : 0;
@@ -247,7 +238,7 @@ NavGeofence fences(const ReportContext& context) {
 }
 
 NavAopstatus autonomous_orbits(const ReportContext& context) {
-    NavAopstatus m = service_message<NavAopstatus>(context);
+    auto m = stamped<NavAopstatus>(context);
     m.aop_cfg = context.config.flag(use_ana) ? 1 : 0;
     return m;
 }
@@ -257,7 +248,7 @@ NavPl protection_level(const ReportContext& context) {
     constexpr double sigmas = 5.33;
     const NavigationState& state = context.state;
     const Fix& fix = state.epoch.fix;
-    NavPl m = service_message<NavPl>(context);
+    auto m = stamped<NavPl>(context);
     m.tmir_coeff = 1;
     m.tmir_exp = -7;
     m.pl_pos_frame = 1;
@@ -272,6 +263,25 @@ NavPl protection_level(const ReportContext& context) {
                 field<std::uint32_t>(fix.vertical_accuracy.value() * sigmas * 1e3)};
     return m;
 }
+
+std::vector<Bytes> relative_position_by_generation(const ReportContext& context) {
+    return context.board.identity.generation <= 8
+               ? ubx_frames_of(relative_position_m8(context, baseline_of(context.state)))
+               : ubx_frames_of(relative_position(context));
+}
+
+// No emulated receiver has NAV-SLAS in use: the time, and zeros.
+constexpr UbxMaker service_makers[] = {maker<solution_covariance>,
+                                       maker<ellipse_message>,
+                                       maker<odometer>,
+                                       maker<stamped<NavEoe>>,
+                                       {NavRelposned::message_id, relative_position_by_generation},
+                                       maker<survey>,
+                                       maker<differential>,
+                                       maker<fences>,
+                                       maker<stamped<NavSlas>>,
+                                       maker<autonomous_orbits>,
+                                       maker<protection_level>};
 
 }  // namespace
 
@@ -297,39 +307,11 @@ std::uint32_t heading_accuracy_field(const NavigationState& state) {
 }
 
 std::vector<Bytes> make_service_message(UbxMessageId message, const ReportContext& context) {
-    switch (message.id) {
-        case NavCov::message_id.id:
-            return ubx_frames_of(solution_covariance(context));
-        case NavEell::message_id.id:
-            return ubx_frames_of(ellipse_message(context));
-        case NavOdo::message_id.id:
-            return ubx_frames_of(odometer(context));
-        case NavEoe::message_id.id:
-            return ubx_frames_of(NavEoe{service_tow(context)});
-        case NavRelposned::message_id.id:
-            return context.board.identity.generation <= 8
-                       ? ubx_frames_of(relative_position_m8(context, baseline_of(context.state)))
-                       : ubx_frames_of(relative_position(context));
-        case NavSvin::message_id.id:
-            return ubx_frames_of(survey(context));
-        case NavDgps::message_id.id:
-            return ubx_frames_of(differential(context));
-        case NavGeofence::message_id.id:
-            return ubx_frames_of(fences(context));
-        case NavSlas::message_id.id:
-            return ubx_frames_of(service_message<NavSlas>(context));
-        case NavAopstatus::message_id.id:
-            return ubx_frames_of(autonomous_orbits(context));
-        case NavPl::message_id.id:
-            return ubx_frames_of(protection_level(context));
-        default:
-            return {};
-    }
+    return made_by(service_makers, message, context);
 }
 
 std::vector<Bytes> make_navigation_message(UbxMessageId message, const ReportContext& context) {
     std::vector<Bytes> frames = make_time_message(message, context);
-    if (message.message_class != NavEoe::message_id.message_class) return frames;
     if (frames.empty()) frames = make_solution_message(message, context);
     if (frames.empty()) frames = make_service_message(message, context);
     return frames;

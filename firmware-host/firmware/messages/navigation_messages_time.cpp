@@ -77,35 +77,11 @@ NavTimeutc time_utc(const ReportContext& context) {
     return m;
 }
 
-NavTimegal time_galileo(const ReportContext& context) {
+// The time of a system that counts weeks. @param ahead_of_gps_leaps its leap seconds that GPS does not count
+template <class Message>
+Message system_time(const ReportContext& context, WeekAndTow (*system)(GpsTime), int ahead_of_gps_leaps = 0) {
     const GpsTime time = reported_time(context).time;
-    const WholeSeconds now = whole_seconds(time, gst_week_and_tow);
-    return {epoch_time(time).i_tow,
-            now.seconds,
-            now.rest,
-            week_field<std::int16_t>(context.state, now.stamp()),
-            field<std::int8_t>(context.state.epoch.fix.leap_seconds),
-            gnss_time_valid(context.state),
-            time_accuracy_ns(context.state)};
-}
-
-// QZSS counts weeks and leap seconds as GPS does.
-NavTimeqzss time_qzss(const ReportContext& context) {
-    const GpsTime time = reported_time(context).time;
-    const WholeSeconds now = whole_seconds(time, week_and_tow);
-    return {epoch_time(time).i_tow,
-            now.seconds,
-            now.rest,
-            week_field<std::int16_t>(context.state, now.stamp()),
-            field<std::int8_t>(context.state.epoch.fix.leap_seconds),
-            gnss_time_valid(context.state),
-            time_accuracy_ns(context.state)};
-}
-
-NavTimebds time_beidou(const ReportContext& context) {
-    constexpr int ahead_of_gps_leaps = bdt_lag / 1s;
-    const GpsTime time = reported_time(context).time;
-    const WholeSeconds now = whole_seconds(time, bdt_week_and_tow);
+    const WholeSeconds now = whole_seconds(time, system);
     return {epoch_time(time).i_tow,
             now.seconds,
             now.rest,
@@ -113,6 +89,13 @@ NavTimebds time_beidou(const ReportContext& context) {
             field<std::int8_t>(context.state.epoch.fix.leap_seconds - ahead_of_gps_leaps),
             gnss_time_valid(context.state),
             time_accuracy_ns(context.state)};
+}
+
+NavTimegal time_galileo(const ReportContext& context) { return system_time<NavTimegal>(context, gst_week_and_tow); }
+// QZSS counts weeks and leap seconds as GPS does.
+NavTimeqzss time_qzss(const ReportContext& context) { return system_time<NavTimeqzss>(context, week_and_tow); }
+NavTimebds time_beidou(const ReportContext& context) {
+    return system_time<NavTimebds>(context, bdt_week_and_tow, bdt_lag / 1s);
 }
 
 // GLONASS time is UTC and three hours; days count in cycles of four years from 1996 (ICD L1, L2 GLONASS 5.1, 4.4).
@@ -193,8 +176,7 @@ NavTimels time_leap_seconds(const ReportContext& context) {
 
 NavClock receiver_clock(const ReportContext& context) {
     const NavigationState& state = context.state;
-    NavClock m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavClock>(context);
     m.t_acc = time_accuracy_ns(state);
     m.f_acc = 3749500;  // ps/s, of captured receivers without a fix
     if (!estimates_known(state)) return m;
@@ -304,6 +286,21 @@ TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     return m;
 }
 
+std::vector<Bytes> time_pulse(const ReportContext& context) {
+    const auto grid = pulse_grid(context);
+    return grid ? ubx_frames_of(next_pulse(context, *grid)) : std::vector<Bytes>();
+}
+
+constexpr UbxMaker time_makers[] = {{TimTp::message_id, time_pulse},
+                                    maker<time_gps>,
+                                    maker<time_utc>,
+                                    maker<time_galileo>,
+                                    maker<time_beidou>,
+                                    maker<time_qzss>,
+                                    maker<time_glonass>,
+                                    maker<time_leap_seconds>,
+                                    maker<receiver_clock>};
+
 }  // namespace
 
 std::optional<std::int64_t> pulses_until_epoch(const ReportContext& context) {
@@ -312,31 +309,7 @@ std::optional<std::int64_t> pulses_until_epoch(const ReportContext& context) {
 }
 
 std::vector<Bytes> make_time_message(UbxMessageId message, const ReportContext& context) {
-    if (message == TimTp::message_id) {
-        const auto grid = pulse_grid(context);
-        return grid ? ubx_frames_of(next_pulse(context, *grid)) : std::vector<Bytes>();
-    }
-    if (message.message_class != NavClock::message_id.message_class) return {};
-    switch (message.id) {
-        case NavTimegps::message_id.id:
-            return ubx_frames_of(time_gps(context));
-        case NavTimeutc::message_id.id:
-            return ubx_frames_of(time_utc(context));
-        case NavTimegal::message_id.id:
-            return ubx_frames_of(time_galileo(context));
-        case NavTimebds::message_id.id:
-            return ubx_frames_of(time_beidou(context));
-        case NavTimeqzss::message_id.id:
-            return ubx_frames_of(time_qzss(context));
-        case NavTimeglo::message_id.id:
-            return ubx_frames_of(time_glonass(context));
-        case NavTimels::message_id.id:
-            return ubx_frames_of(time_leap_seconds(context));
-        case NavClock::message_id.id:
-            return ubx_frames_of(receiver_clock(context));
-        default:
-            return {};
-    }
+    return made_by(time_makers, message, context);
 }
 
 }  // namespace skyloop::firmware

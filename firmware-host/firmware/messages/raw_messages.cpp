@@ -236,14 +236,15 @@ RxmSvsi satellites_known(const ReportContext& context) {
     return m;
 }
 
+constexpr UbxMaker raw_makers[] = {maker<raw_measurements>,
+                                   maker<code_measurements>,
+                                   {RxmSfrbx::message_id, received_subframes},
+                                   maker<satellites_known>};
+
 }  // namespace
 
 std::vector<Bytes> make_raw_message(UbxMessageId message, const ReportContext& context) {
-    if (message == RxmRawx::message_id) return ubx_frames_of(raw_measurements(context));
-    if (message == RxmMeasx::message_id) return ubx_frames_of(code_measurements(context));
-    if (message == RxmSfrbx::message_id) return received_subframes(context);
-    if (message == RxmSvsi::message_id) return ubx_frames_of(satellites_known(context));
-    return {};
+    return made_by(raw_makers, message, context);
 }
 
 }  // namespace skyloop::firmware

@@ -53,8 +53,7 @@ std::uint32_t satellite_flags(const SatelliteStatus& s, const ReportContext& con
 }
 
 NavSat satellites_in_view(const ReportContext& context) {
-    NavSat m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavSat>(context);
     m.version = 1;
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
         const SkyFields sky = sky_fields(s, context.state);
@@ -77,8 +76,7 @@ std::uint8_t channel_flags(const SatelliteStatus& s, const NavigationState& stat
 NavSvinfo channels(const ReportContext& context) {
     constexpr std::uint8_t no_channel = 255;
     const int generation = context.board.identity.generation;
-    NavSvinfo m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavSvinfo>(context);
     m.global_flags = static_cast<std::uint8_t>(std::clamp(generation - 4, 0, 4));  // 4 of M8, 1 of u-blox 5
     std::uint8_t channel = 0;
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
@@ -105,8 +103,7 @@ int visibility(const SatelliteStatus& s, const ReportContext& context) {
 
 NavOrb orbits(const ReportContext& context) {
     constexpr std::uint8_t from_sky_for_unknown_time = 1 << 5 | 31;
-    NavOrb m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavOrb>(context);
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
         if (orbit_source(s, context.state) == 0) continue;
         NavOrbItem item;
@@ -151,8 +148,7 @@ std::int8_t sbas_system(std::uint8_t prn) {
 // With corrections of SBAS in use, the strongest of its satellites is the one that they come from.
 NavSbas augmentation(const ReportContext& context) {
     const NavigationState& state = context.state;
-    NavSbas m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+    auto m = stamped<NavSbas>(context);
     const auto satellites = sorted_satellites(state.epoch.fix);
     const SatelliteStatus* source = nullptr;
     for (const SatelliteStatus& s : satellites)
@@ -212,15 +208,6 @@ std::uint8_t signal_quality(const Observation& observation) {
     if (!observation.pseudorange) return 3;
     if (!observation.carrier_phase) return 4;
     return observation.half_cycle_resolved ? 7 : 6;
-}
-
-std::vector<Bytes> make_satellite_message(UbxMessageId message, const ReportContext& context) {
-    if (message == NavSat::message_id) return ubx_frames_of(satellites_in_view(context));
-    if (message == NavSvinfo::message_id) return ubx_frames_of(channels(context));
-    if (message == NavOrb::message_id) return ubx_frames_of(orbits(context));
-    if (message == NavSbas::message_id) return ubx_frames_of(augmentation(context));
-    if (message == NavSig::message_id) return make_signal_message(context);
-    return {};
 }
 
 namespace {
@@ -304,11 +291,8 @@ NavSigItem signal_item(const SignalReport& report, const ReportContext& context)
     return item;
 }
 
-}  // namespace
-
-std::vector<Bytes> make_signal_message(const ReportContext& context) {
-    NavSig m;
-    m.i_tow = epoch_time(reported_time(context).time).i_tow;
+NavSig signals(const ReportContext& context) {
+    auto m = stamped<NavSig>(context);
     const auto& measured = context.state.epoch.observations.signals;
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
         const auto of_it = [&](const Observation& o) { return o.satellite == s.id; };
@@ -321,7 +305,16 @@ std::vector<Bytes> make_signal_message(const ReportContext& context) {
     std::stable_sort(m.signals.begin(), m.signals.end(), [](const NavSigItem& a, const NavSigItem& b) {
         return std::tie(a.gnss_id, a.sv_id, a.sig_id) < std::tie(b.gnss_id, b.sv_id, b.sig_id);
     });
-    return ubx_frames_of(m);
+    return m;
+}
+
+constexpr UbxMaker satellite_makers[] = {maker<satellites_in_view>, maker<channels>, maker<orbits>, maker<augmentation>,
+                                         maker<signals>};
+
+}  // namespace
+
+std::vector<Bytes> make_satellite_message(UbxMessageId message, const ReportContext& context) {
+    return made_by(satellite_makers, message, context);
 }
 
 }  // namespace skyloop::firmware
