@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <vector>
 
 namespace skyloop::firmware {
 namespace {
@@ -41,6 +43,12 @@ std::optional<ErrorEllipse> error_ellipse(const Fix& fix, std::span<const Satell
     if (orientation < 0) orientation += std::numbers::pi;
     return ErrorEllipse{Metres(std::sqrt(mean + spread)), Metres(std::sqrt(std::max(0.0, mean - spread))),
                         Angle::radians(orientation), Metres(north), Metres(east)};
+}
+
+std::optional<ErrorEllipse> error_ellipse(const Fix& fix) {
+    std::vector<SatelliteStatus> used;
+    std::ranges::copy_if(fix.satellites, std::back_inserter(used), &SatelliteStatus::used);
+    return error_ellipse(fix, used);
 }
 
 Eigen::Matrix4d position_covariance(const Fix& fix, const ErrorEllipse& ellipse) {

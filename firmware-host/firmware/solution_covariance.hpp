@@ -25,6 +25,8 @@ struct ErrorEllipse {
 /// of the used satellites give (unit weights, position and one clock); without four of them, none. Nothing when the fix
 /// has no horizontal DOP.
 std::optional<ErrorEllipse> error_ellipse(const Fix& fix, std::span<const SatelliteStatus> used);
+/// The same with all satellites that the solution uses.
+std::optional<ErrorEllipse> error_ellipse(const Fix& fix);
 
 /// Of the position and the receiver's clock: east, north, up, clock, m². Along north and east the accuracy is split as
 /// the ellipse has it; where the solution does not tell what goes together, the ellipse tells it of those two.

@@ -54,12 +54,13 @@ std::uint8_t beidou_signal(SatelliteId satellite, Signal signal, bool b1c_for_b1
 
 }  // namespace
 
-SplitValue split_value(double value, int parts) {
-    if (std::isnan(value)) return {};
+void put_split(double value, int parts, std::int32_t& whole, std::int8_t& rest) {
+    const double number = std::isnan(value) ? 0 : value;
     const double limit = static_cast<double>(std::numeric_limits<std::int32_t>::max()) * parts;
-    const double within = std::clamp(value, -limit, limit);
-    const std::int64_t whole = std::llround(within / parts);
-    return {static_cast<std::int32_t>(whole), static_cast<std::int8_t>(std::llround(within) - whole * parts)};
+    const double within = std::clamp(number, -limit, limit);
+    const std::int64_t rounded = std::llround(within / parts);
+    whole = static_cast<std::int32_t>(rounded);
+    rest = static_cast<std::int8_t>(std::llround(within) - rounded * parts);
 }
 
 EpochTime epoch_time(GpsTime time) {

@@ -34,12 +34,9 @@ Integer field(double value) {
 
 /// A number, rounded as messages of lower precision have it, and what is left of it for a field of higher precision
 /// (NAV-HPPOSLLH and its like; 611 epochs of two captured ZED-F9P agree with their NAV-PVT).
-struct SplitValue {
-    std::int32_t whole = 0;
-    std::int8_t rest = 0;  ///< −parts/2 … parts/2
-};
-/// @param value in units of the rest @param parts of these make one unit of the whole: 100 or 10
-SplitValue split_value(double value, int parts);
+/// @param value in units of the rest; not a number is 0 @param parts of these make one unit of the whole: 100 or 10
+/// @param rest −parts/2 … parts/2
+void put_split(double value, int parts, std::int32_t& whole, std::int8_t& rest);
 
 /// An accuracy that nobody knows.
 inline constexpr std::uint32_t unknown_accuracy = 0xFFFF'FFFF;

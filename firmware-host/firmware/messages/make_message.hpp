@@ -77,6 +77,13 @@ std::int32_t course_field(const NavigationState& state);
 /// 1 σ of it, 1e-5 deg, 180° at most and while it is frozen.
 std::uint32_t heading_accuracy_field(const NavigationState& state);
 
+/// Where a satellite stands, in whole degrees.
+struct SkyFields {
+    std::int8_t elevation = -91;  ///< −91: unknown
+    std::int16_t azimuth = 0;
+};
+SkyFields sky_fields(const SatelliteStatus& s, const NavigationState& state);
+
 /// Ascending by system and number, at most as many as a message can count.
 std::vector<SatelliteStatus> sorted_satellites(const Fix& fix);
 

@@ -140,14 +140,10 @@ NavHpposllh navigation_hpposllh(const ReportContext& context) {
     m.h_acc = m.v_acc = unknown_accuracy;
     if (!state.ever_had_fix) return m;
     const double height = fix.position.height.above_ellipsoid.value();
-    const auto put = [](SplitValue value, std::int32_t& whole, std::int8_t& rest) {
-        whole = value.whole;
-        rest = value.rest;
-    };
-    put(split_value(fix.position.longitude.deg() * 1e9, 100), m.lon, m.lon_hp);
-    put(split_value(fix.position.latitude.deg() * 1e9, 100), m.lat, m.lat_hp);
-    put(split_value(height * 1e4, 10), m.height, m.height_hp);
-    put(split_value((height - fix.geoid_undulation.value()) * 1e4, 10), m.h_msl, m.h_msl_hp);
+    put_split(fix.position.longitude.deg() * 1e9, 100, m.lon, m.lon_hp);
+    put_split(fix.position.latitude.deg() * 1e9, 100, m.lat, m.lat_hp);
+    put_split(height * 1e4, 10, m.height, m.height_hp);
+    put_split((height - fix.geoid_undulation.value()) * 1e4, 10, m.h_msl, m.h_msl_hp);
     if (!estimates_known(state)) return m;
     m.h_acc = field<std::uint32_t>(fix.horizontal_accuracy.value() * 1e4);
     m.v_acc = field<std::uint32_t>(fix.vertical_accuracy.value() * 1e4);
@@ -191,11 +187,8 @@ NavPosecef navigation_posecef(const ReportContext& context) {
 NavHpposecef navigation_hpposecef(const ReportContext& context) {
     auto m = stamped<NavHpposecef>(context);
     const Eigen::Vector3d place = earth_fixed(context.state);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const SplitValue value = split_value(place[static_cast<Eigen::Index>(i)] * 1e4, 100);
-        m.ecef[i] = value.whole;
-        m.ecef_hp[i] = value.rest;
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+        put_split(place[static_cast<Eigen::Index>(i)] * 1e4, 100, m.ecef[i], m.ecef_hp[i]);
     m.flags = place_is_valid(context) ? 0 : 1;
     m.p_acc = place_accuracy(context.state, 1e4);
     return m;

@@ -21,13 +21,6 @@ constexpr std::uint32_t use_ana = 0x10230001;
 // A course that is frozen says nothing of the motion.
 constexpr std::uint32_t half_turn = 18000000;  // 1e-5 deg
 
-std::vector<SatelliteStatus> solved_satellites(const Fix& fix) {
-    std::vector<SatelliteStatus> used;
-    std::copy_if(fix.satellites.begin(), fix.satellites.end(), std::back_inserter(used),
-                 [](const SatelliteStatus& s) { return s.used; });
-    return used;
-}
-
 // Of east, north and up the variances and covariances NN, NE, ND, EE, ED, DD.
 std::array<float, 6> in_ned(const Eigen::Matrix3d& enu) {
     // Subtracted from 0, which stays without a sign.
@@ -63,7 +56,7 @@ NavCov solution_covariance(const ReportContext& context) {
         m.vel_cov = {};
         return m;
     }
-    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
+    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix);
     if (!fix.has_position() || !ellipse) return m;
     const Eigen::Matrix4d position = position_covariance(fix, *ellipse);
     m.pos_cov = in_ned(position.topLeftCorner<3, 3>());
@@ -83,7 +76,7 @@ NavEell ellipse_message(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
     auto m = stamped<NavEell>(context);
     m.major = m.minor = unknown_accuracy;
-    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
+    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix);
     if (!fix.has_position() || !ellipse) return m;
     m.orient = field<std::uint16_t>(ellipse->orientation.deg() * 1e2);
     m.major = field<std::uint32_t>(ellipse->semi_major.value() * 1e3);
@@ -143,11 +136,8 @@ NavRelposned0 relative_position_m8(const ReportContext& context, const std::opti
     const RelativePosition& relative = baseline->vector;
     m.ref_station_id = field<std::uint16_t>(relative.base_station);
     const double parts[] = {relative.north_m, relative.east_m, relative.down_m};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const SplitValue value = split_value(parts[i] * 1e4, 100);
-        m.rel_pos[i] = value.whole;
-        m.rel_pos_hp[i] = value.rest;
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+        put_split(parts[i] * 1e4, 100, m.rel_pos[i], m.rel_pos_hp[i]);
     m.acc.fill(field<std::uint32_t>(relative.deviation.value() * 1e4));
     return m;
 }
@@ -165,9 +155,7 @@ NavRelposned relative_position(const ReportContext& context) {
     if (!baseline) return m;
     const RelativePosition* relative = &baseline->vector;
     const double length = std::hypot(relative->north_m, relative->east_m, relative->down_m);
-    const SplitValue split = split_value(length * 1e4, 100);
-    m.rel_pos_length = split.whole;
-    m.rel_pos_length_hp = split.rest;
+    put_split(length * 1e4, 100, m.rel_pos_length, m.rel_pos_length_hp);
     m.acc_length = m.acc[0];
     const double heading = std::atan2(relative->east_m, relative->north_m) * 180 / std::numbers::pi;
     m.rel_pos_heading = field<std::int32_t>(std::fmod(heading + 360, 360.0) * 1e5);
@@ -188,11 +176,8 @@ NavSvin survey(const ReportContext& context) {
     m.mean_acc = unknown_accuracy;
     const auto mean = survey->mean();
     if (!mean) return m;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const SplitValue value = split_value(mean->vector()[static_cast<Eigen::Index>(i)] * 1e4, 100);
-        m.mean[i] = value.whole;
-        m.mean_hp[i] = value.rest;
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+        put_split(mean->vector()[static_cast<Eigen::Index>(i)] * 1e4, 100, m.mean[i], m.mean_hp[i]);
     m.mean_acc = field<std::uint32_t>(survey->accuracy().value() * 1e4);
     m.obs = field<std::uint32_t>(static_cast<double>(survey->positions()));
     return m;
@@ -254,7 +239,7 @@ NavPl protection_level(const ReportContext& context) {
     m.pl_pos_frame = 1;
     m.pl_pos.fill(unknown_accuracy);
     m.invalidity_reason.fill(1);
-    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix, solved_satellites(fix));
+    const std::optional<ErrorEllipse> ellipse = error_ellipse(fix);
     if (!state.fix_ok || !fix.has_position() || !ellipse) return m;
     m.pl_pos_valid = 1;
     m.invalidity_reason[0] = 0;

@@ -213,11 +213,9 @@ RxmSvsiItem satellite_knowledge(std::uint8_t number, const SatelliteStatus& s, c
     item.sv_flag =
         static_cast<std::uint8_t>((s.has_ephemeris ? 1 : no_accuracy) | (satellite_health(s, state) == 1 ? 0x10 : 0) |
                                   (s.has_ephemeris ? 0x20 : 0) | (almanac ? 0x40 : 0));
-    item.elev = -91;
-    if (direction_known(s, state)) {
-        item.azim = static_cast<std::int16_t>(std::lround(s.azimuth.deg()) % 360);
-        item.elev = field<std::int8_t>(s.elevation.deg());
-    }
+    const SkyFields sky = sky_fields(s, state);
+    item.azim = sky.azimuth;
+    item.elev = sky.elevation;
     item.age = static_cast<std::uint8_t>((almanac ? fresh : no_age) | (s.has_ephemeris ? fresh : no_age) << 4);
     return item;
 }

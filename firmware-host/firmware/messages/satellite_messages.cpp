@@ -12,17 +12,6 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr std::int8_t unknown_elevation = -91;
-
-struct SkyFields {
-    std::int8_t elevation = unknown_elevation;
-    std::int16_t azimuth = 0;
-};
-SkyFields sky_fields(const SatelliteStatus& s, const NavigationState& state) {
-    if (!direction_known(s, state)) return {};
-    return {field<std::int8_t>(s.elevation.deg()), static_cast<std::int16_t>(std::lround(s.azimuth.deg()) % 360)};
-}
-
 bool has_almanac(const SatelliteStatus& s, const NavigationState& state) {
     return s.id.constellation != Constellation::sbas && almanac_known(state);
 }
@@ -175,6 +164,11 @@ NavSbas augmentation(const ReportContext& context) {
 }
 
 }  // namespace
+
+SkyFields sky_fields(const SatelliteStatus& s, const NavigationState& state) {
+    if (!direction_known(s, state)) return {};
+    return {field<std::int8_t>(s.elevation.deg()), static_cast<std::int16_t>(std::lround(s.azimuth.deg()) % 360)};
+}
 
 std::vector<SatelliteStatus> sorted_satellites(const Fix& fix) {
     std::vector<SatelliteStatus> list = fix.satellites;

@@ -50,42 +50,6 @@ SbfCovariance turned(const SbfCovariance& geodetic, const NavigationState& state
 
 }  // namespace
 
-SbfPvtCartesian sbf_pvt_cartesian(const ReportContext& context) {
-    const SbfPvtGeodetic from = sbf_pvt_geodetic(context);
-    SbfPvtCartesian to;
-    to.time = from.time;
-    to.mode = from.mode;
-    to.error = from.error;
-    if (from.error == 0) {
-        const NavigationState& state = context.state;
-        const Eigen::Vector3d place = to_ecef(state.epoch.fix.position).vector();
-        const VelocityNed& v = state.epoch.fix.velocity;
-        const Eigen::Vector3d speed = along_axes(state, v.east, v.north, -v.down);
-        to.x = place.x();
-        to.y = place.y();
-        to.z = place.z();
-        to.vx = static_cast<float>(speed.x());
-        to.vy = static_cast<float>(speed.y());
-        to.vz = static_cast<float>(speed.z());
-    }
-    to.undulation = from.undulation;
-    to.course = from.course;
-    to.clock_bias = from.clock_bias;
-    to.clock_drift = from.clock_drift;
-    to.time_system = from.time_system;
-    to.datum = from.datum;
-    to.num_sv = from.num_sv;
-    to.wa_corr_info = from.wa_corr_info;
-    to.reference_id = from.reference_id;
-    to.mean_corr_age = from.mean_corr_age;
-    to.signal_info = from.signal_info;
-    to.alert_flag = from.alert_flag;
-    to.num_bases = from.num_bases;
-    to.ppp_info = from.ppp_info;
-    to.accuracy = *from.accuracy;
-    return to;
-}
-
 SbfPosCovCartesian sbf_position_covariance_cartesian(const NavigationState& state) {
     const SbfPosCovGeodetic from = sbf_position_covariance(state);
     return {from.time, from.mode, from.error, turned(from.covariance, state)};
@@ -130,8 +94,7 @@ SbfBaseVectorCart sbf_base_vector_cartesian(const NavigationState& state) {
 
 SbfSatVisibility sbf_visible_satellites(const NavigationState& state) {
     constexpr std::uint8_t by_almanac = 1, by_ephemeris = 2;
-    SbfSatVisibility block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfSatVisibility>(state);
     for (const SatelliteStatus& satellite : state.epoch.fix.satellites) {
         const auto svid = sbf_svid(satellite.id);
         if (!svid || satellite.elevation.deg() < 0 || !direction_known(satellite, state)) continue;

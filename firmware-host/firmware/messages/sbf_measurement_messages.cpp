@@ -178,8 +178,7 @@ std::uint8_t SbfMeasurementCounts::losses(const Observation& observation) const 
 }
 
 SbfMeasEpoch sbf_measurements(const NavigationState& state, const SbfMeasurementCounts& counts) {
-    SbfMeasEpoch block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfMeasEpoch>(state);
     block.clock_jumps = counts.clock_jumps();
     for (const SbfMeasuredSignals& signals : measured_satellites(state))
         block.satellites.push_back(measured_satellite(signals, state));
@@ -187,8 +186,7 @@ SbfMeasEpoch sbf_measurements(const NavigationState& state, const SbfMeasurement
 }
 
 SbfMeasExtra sbf_measurement_extra(const NavigationState& state, const SbfMeasurementCounts& counts) {
-    SbfMeasExtra block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfMeasExtra>(state);
     double carrier = 0, doppler = 0;
     for (const SbfMeasuredSignals& signals : measured_satellites(state))
         for (const SbfMeasured& signal : signals) {

@@ -7,6 +7,7 @@
 
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/other_protocols.hpp"
+#include "base/geo/local_frame.hpp"
 #include "firmware/solution_covariance.hpp"
 #include "world/gnss/constants.hpp"
 
@@ -84,15 +85,15 @@ constexpr std::uint32_t antenna_error = 1u << 5;
 // The first bit of that signal in the statuses of ChannelStatus.
 int sbf_status_shift(Constellation constellation) { return constellation == Constellation::galileo ? 2 : 0; }
 
-void put_sbf_solution(const NavigationState& state, SbfPvtGeodetic& to) {
+// What PVTGeodetic and PVTCartesian both have: everything but the axes. @param accuracy of the block
+template <class Block>
+void put_sbf_solution(const ReportContext& context, Block& to, SbfPvtAccuracy& accuracy) {
+    const NavigationState& state = context.state;
+    to.mode = sbf_mode(state);
+    to.error = sbf_error(state);
+    if (!has_solution(state)) return;
     const Fix& fix = state.epoch.fix;
-    to.latitude = fix.position.latitude.rad();
-    to.longitude = fix.position.longitude.rad();
-    to.height = fix.position.height.above_ellipsoid.value();
     to.undulation = static_cast<float>(fix.geoid_undulation.value());
-    to.vel_north = static_cast<float>(fix.velocity.north);
-    to.vel_east = static_cast<float>(fix.velocity.east);
-    to.vel_up = static_cast<float>(-fix.velocity.down);
     if (state.course && fix.speed.value() >= 0.1) to.course = static_cast<float>(state.course->deg());
     to.clock_bias = fix.clock_bias.value() / speed_of_light * 1e3;
     to.clock_drift = static_cast<float>(fix.clock_drift.value() / speed_of_light * 1e6);
@@ -103,13 +104,9 @@ void put_sbf_solution(const NavigationState& state, SbfPvtGeodetic& to) {
     if (state.corrections.age) to.mean_corr_age = sbf_u2(state.corrections.age->value() * 100);
     if (state.corrections.station) to.reference_id = sbf_u2(*state.corrections.station);
     to.num_bases = state.corrections.state == CorrectionState::none ? 0 : 1;
-}
-
-std::vector<SatelliteStatus> sbf_used(const Fix& fix) {
-    std::vector<SatelliteStatus> used;
-    for (const SatelliteStatus& satellite : fix.satellites)
-        if (satellite.used) used.push_back(satellite);
-    return used;
+    accuracy.latency = sbf_u2(context.board.solution_latency.value() * 1e4);
+    accuracy.h_accuracy = sbf_u2(2 * fix.horizontal_accuracy.value() * 100);
+    accuracy.v_accuracy = sbf_u2(2 * fix.vertical_accuracy.value() * 100);
 }
 
 // Of east, north, up and clock the variances of north, east, up and clock, and the covariances in SBF's order.
@@ -148,25 +145,40 @@ SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid, bool
 }  // namespace
 
 SbfPvtGeodetic sbf_pvt_geodetic(const ReportContext& context) {
-    const NavigationState& state = context.state;
-    SbfPvtGeodetic block;
-    block.time = sbf_time(state);
-    block.mode = sbf_mode(state);
-    block.error = sbf_error(state);
-    block.accuracy.emplace();
-    if (!has_solution(state)) return block;
-    put_sbf_solution(state, block);
-    const Fix& fix = state.epoch.fix;
-    block.accuracy->latency = sbf_u2(context.board.solution_latency.value() * 1e4);
-    block.accuracy->h_accuracy = sbf_u2(2 * fix.horizontal_accuracy.value() * 100);
-    block.accuracy->v_accuracy = sbf_u2(2 * fix.vertical_accuracy.value() * 100);
+    auto block = sbf_block<SbfPvtGeodetic>(context.state);
+    put_sbf_solution(context, block, block.accuracy.emplace());
+    if (!has_solution(context.state)) return block;
+    const Fix& fix = context.state.epoch.fix;
+    block.latitude = fix.position.latitude.rad();
+    block.longitude = fix.position.longitude.rad();
+    block.height = fix.position.height.above_ellipsoid.value();
+    block.vel_north = static_cast<float>(fix.velocity.north);
+    block.vel_east = static_cast<float>(fix.velocity.east);
+    block.vel_up = static_cast<float>(-fix.velocity.down);
+    return block;
+}
+
+SbfPvtCartesian sbf_pvt_cartesian(const ReportContext& context) {
+    auto block = sbf_block<SbfPvtCartesian>(context.state);
+    put_sbf_solution(context, block, block.accuracy);
+    if (!has_solution(context.state)) return block;
+    const Fix& fix = context.state.epoch.fix;
+    const Eigen::Vector3d place = to_ecef(fix.position).vector();
+    const Velocity<Enu> local(fix.velocity.east, fix.velocity.north, -fix.velocity.down);
+    const Eigen::Vector3d speed = LocalFrame(fix.position).to_ecef(local).vector();
+    block.x = place.x();
+    block.y = place.y();
+    block.z = place.z();
+    block.vx = static_cast<float>(speed.x());
+    block.vy = static_cast<float>(speed.y());
+    block.vz = static_cast<float>(speed.z());
     return block;
 }
 
 SbfPosCovGeodetic sbf_position_covariance(const NavigationState& state) {
     SbfPosCovGeodetic block{sbf_time(state), sbf_mode(state), sbf_error(state), no_sbf_covariance};
     const Fix& fix = state.epoch.fix;
-    const auto ellipse = error_ellipse(fix, sbf_used(fix));
+    const auto ellipse = error_ellipse(fix);
     if (!has_solution(state) || !ellipse) return block;
     block.covariance = sbf_covariance(position_covariance(fix, *ellipse));
     if (fix.type == FixType::fix_2d) say_nothing_of(sbf_of_height, block.covariance);
@@ -191,8 +203,7 @@ SbfVelCovGeodetic sbf_velocity_covariance(const NavigationState& state) {
 }
 
 SbfDop sbf_dop(const NavigationState& state) {
-    SbfDop block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfDop>(state);
     if (!has_solution(state)) return block;
     const Fix& fix = state.epoch.fix;
     block.num_sv = reported_satellites(fix);
@@ -204,8 +215,7 @@ SbfDop sbf_dop(const NavigationState& state) {
 }
 
 SbfAttEuler sbf_attitude(const NavigationState& state) {
-    SbfAttEuler block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfAttEuler>(state);
     const auto attitude = pair_attitude(state);
     if (!attitude) return block;
     block.num_sv = reported_satellites(state.epoch.fix);
@@ -217,8 +227,7 @@ SbfAttEuler sbf_attitude(const NavigationState& state) {
 }
 
 SbfAuxAntPositions sbf_other_antenna(const NavigationState& state) {
-    SbfAuxAntPositions block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfAuxAntPositions>(state);
     if (!pair_attitude(state)) return block;
     const RelativePosition& relative = *state.epoch.relative;
     SbfAuxAntenna antenna;
@@ -234,8 +243,7 @@ SbfAuxAntPositions sbf_other_antenna(const NavigationState& state) {
 SbfEndOfPvt sbf_end_of_pvt(const NavigationState& state) { return {sbf_time(state)}; }
 
 SbfChannelStatus sbf_channel_status(const NavigationState& state) {
-    SbfChannelStatus block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfChannelStatus>(state);
     for (const SatelliteStatus& satellite : state.epoch.fix.satellites) {
         const auto svid = sbf_svid(satellite.id);
         const std::uint8_t number = sbf_channel_number(state, satellite.id);
@@ -248,8 +256,7 @@ SbfChannelStatus sbf_channel_status(const NavigationState& state) {
 }
 
 SbfReceiverStatus sbf_receiver_status(const NavigationState& state) {
-    SbfReceiverStatus block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfReceiverStatus>(state);
     block.up_time = field<std::uint32_t>(std::floor(state.since_start.value()));
     block.rx_state = (state.monitors.antenna_power == 1 ? antenna_active : 0) | (state.time.date ? week_set : 0) |
                      (state.time.time ? tow_set : 0) | (has_solution(state) ? fine_time : 0) |

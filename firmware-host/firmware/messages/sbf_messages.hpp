@@ -31,6 +31,14 @@ inline SbfTime sbf_time(const NavigationState& state) {
     return time;
 }
 
+/// A block that tells its stamp so far, and nothing else.
+template <class Block>
+Block sbf_block(const NavigationState& state) {
+    Block block;
+    block.time = sbf_time(state);
+    return block;
+}
+
 /// PVT mode, bits 0-3 and 7 (PolaRx5TR reference guide, PVTGeodetic).
 inline std::uint8_t sbf_mode(const NavigationState& state) {
     constexpr std::uint8_t fixed_location = 3;

@@ -214,26 +214,10 @@ std::uint16_t galileo_health(int health) {
 Bytes galileo_record(const KeplerEphemeris& r, std::uint8_t svid, GpsTime end) {
     constexpr std::int64_t galileo_weeks = 4096;
     const WeekAndTow toe = week_and_tow(r.toe), toc = week_and_tow(r.toc);
-    const SbfKeplerOrbit orbit = sbf_orbit(r, toe);
     SbfGalNav block;
     block.time = sent_at(end);
     block.svid = svid;
-    block.sqrt_a = orbit.sqrt_a;
-    block.m_0 = orbit.m_0;
-    block.e = orbit.e;
-    block.i_0 = orbit.i_0;
-    block.omega = orbit.omega;
-    block.omega_0 = orbit.omega_0;
-    block.omega_dot = orbit.omega_dot;
-    block.idot = orbit.idot;
-    block.delta_n = orbit.delta_n;
-    block.c_uc = orbit.c_uc;
-    block.c_us = orbit.c_us;
-    block.c_rc = orbit.c_rc;
-    block.c_rs = orbit.c_rs;
-    block.c_ic = orbit.c_ic;
-    block.c_is = orbit.c_is;
-    block.toe = orbit.toe;
+    block.orbit = sbf_orbit(r, toe);
     block.toc = whole_seconds(toc);
     block.af2 = static_cast<float>(r.af2);
     block.af1 = static_cast<float>(r.af1);

@@ -67,8 +67,7 @@ SbfRfBand disturbed_band(double frequency_hz, const BandMonitor& band) {
 }  // namespace
 
 SbfAttCovEuler sbf_attitude_covariance(const NavigationState& state) {
-    SbfAttCovEuler block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfAttCovEuler>(state);
     if (!pair_attitude(state)) return block;
     const RelativePosition& r = *state.epoch.relative;
     const double sigma = r.deviation.value();
@@ -83,8 +82,7 @@ SbfAttCovEuler sbf_attitude_covariance(const NavigationState& state) {
 }
 
 SbfBaseVectorGeod sbf_base_vector(const NavigationState& state) {
-    SbfBaseVectorGeod block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfBaseVectorGeod>(state);
     if (!has_solution(state)) return block;
     const auto line = base_line(state);
     if (!line) return block;
@@ -116,8 +114,7 @@ SbfEndOfAtt sbf_end_of_attitude(const NavigationState& state) { return {sbf_time
 SbfQualityInd sbf_quality(const NavigationState& state) {
     constexpr unsigned overall = 0, signals = 1, radio = 11, processor = 21, base_station = 30;
     constexpr double head_room = 8, fresh_s = 1, stale_s = 20;
-    SbfQualityInd block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfQualityInd>(state);
     const double of_signals = signal_quality(state.epoch.fix);
     const double of_radio = state.monitors.jamming_state() >= 2 ? 10 - 3.5 * state.monitors.jamming_state() : 10;
     block.indicators = {indicator(overall, has_solution(state) ? std::min(of_signals, of_radio) : 0),
@@ -130,8 +127,7 @@ SbfQualityInd sbf_quality(const NavigationState& state) {
 
 SbfRfStatus sbf_radio_status(const NavigationState& state) {
     constexpr int noticed = 2;
-    SbfRfStatus block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfRfStatus>(state);
     block.flags = state.monitors.spoofing >= SpoofingIndication::indicated ? 1 : 0;
     constexpr double l1 = 1575.42e6, l2 = 1227.60e6;
     if (state.monitors.upper.jamming_state >= noticed) block.bands.push_back(disturbed_band(l1, state.monitors.upper));
@@ -139,15 +135,10 @@ SbfRfStatus sbf_radio_status(const NavigationState& state) {
     return block;
 }
 
-SbfGalAuthStatus sbf_authentication(const NavigationState& state) {
-    SbfGalAuthStatus block;
-    block.time = sbf_time(state);
-    return block;
-}
+SbfGalAuthStatus sbf_authentication(const NavigationState& state) { return sbf_block<SbfGalAuthStatus>(state); }
 
 SbfReceiverTime sbf_receiver_time(const NavigationState& state) {
-    SbfReceiverTime block;
-    block.time = sbf_time(state);
+    auto block = sbf_block<SbfReceiverTime>(state);
     block.sync_level = static_cast<std::uint8_t>((state.time.date ? 1 : 0) | (state.time.time ? 2 : 0) |
                                                  (has_solution(state) ? 4 : 0));
     if (!state.time.date || !state.time.time) return block;

@@ -269,13 +269,8 @@ struct SbfGalNav {
     SbfTime time;
     std::uint8_t svid = 0;
     std::uint8_t source = 2;  ///< 2 I/NAV, 16 F/NAV: whose clock it is
-    double sqrt_a = 0;        ///< √m
-    double m_0 = 0, e = 0, i_0 = 0, omega = 0, omega_0 = 0;
-    float omega_dot = 0, idot = 0, delta_n = 0;  ///< semicircles/s
-    float c_uc = 0, c_us = 0;                    ///< rad
-    float c_rc = 0, c_rs = 0;                    ///< m
-    float c_ic = 0, c_is = 0;                    ///< rad
-    std::uint32_t toe = 0, toc = 0;              ///< s
+    SbfKeplerOrbit orbit;     ///< in an order of its own
+    std::uint32_t toc = 0;    ///< s
     float af2 = 0, af1 = 0;
     double af0 = 0;  ///< s
     std::uint16_t toe_week = 0, toc_week = 0;
@@ -287,6 +282,15 @@ struct SbfGalNav {
     float bgd_l1_e5b = static_cast<float>(sbf_nothing);                     ///< s
     float bgd_l1a_e6a = static_cast<float>(sbf_nothing);
     std::uint8_t cnav_encrypted = 255;
+
+    template <class M, class V>
+    static void fields(M& m, V& v) {
+        auto& o = m.orbit;
+        v(m.time, m.svid, m.source, o.sqrt_a, o.m_0, o.e, o.i_0, o.omega, o.omega_0, o.omega_dot, o.idot, o.delta_n,
+          o.c_uc, o.c_us, o.c_rc, o.c_rs, o.c_ic, o.c_is, o.toe, m.toc, m.af2, m.af1, m.af0, m.toe_week, m.toc_week,
+          m.iod_nav, m.health, m.health_prs, m.sisa_l1_e5a, m.sisa_l1_e5b, m.sisa_l1a_e6a, m.bgd_l1_e5a, m.bgd_l1_e5b,
+          m.bgd_l1a_e6a, m.cnav_encrypted);
+    }
 };
 
 /// GLONav: the state vector of strings 1 to 5.

@@ -9,6 +9,16 @@ namespace skyloop::firmware {
 namespace {
 
 // NAV-PVT has the same number without the rest: both have to round alike.
+struct SplitValue {
+    std::int32_t whole = 7;
+    std::int8_t rest = 7;
+};
+SplitValue split_value(double value, int parts) {
+    SplitValue split;
+    put_split(value, parts, split.whole, split.rest);
+    return split;
+}
+
 TEST(SplitValue, RoundsTheWholeAsTheShortFieldDoes) {
     for (const double degrees : {-33.8541730477, 151.2160701254, 47.00000000501, -0.00000005, 0.0, 179.99999999951}) {
         const SplitValue split = split_value(degrees * 1e9, 100);
