@@ -1,5 +1,6 @@
 // What leaves the receiver and when (RECEIVER.md 4.2, 4.5 to 4.7).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -29,19 +30,9 @@ UbxMessageId protocol_of(const Bytes& message) {
 }
 
 std::string_view antenna_text(AntennaStatus status) {
-    switch (status) {
-        case AntennaStatus::initialising:
-            return "ANTSTATUS=INIT";
-        case AntennaStatus::unknown:
-            return "ANTSTATUS=DONTKNOW";
-        case AntennaStatus::ok:
-            return "ANTSTATUS=OK";
-        case AntennaStatus::short_circuit:
-            return "ANTSTATUS=SHORT";
-        case AntennaStatus::open:
-            return "ANTSTATUS=OPEN";
-    }
-    return "";
+    constexpr std::array<std::string_view, 5> texts{"ANTSTATUS=INIT", "ANTSTATUS=DONTKNOW", "ANTSTATUS=OK",
+                                                    "ANTSTATUS=SHORT", "ANTSTATUS=OPEN"};
+    return texts[static_cast<std::size_t>(status)];
 }
 
 // What measures was handed its corrections before; of models that measure nothing the fix has got those of now.

@@ -67,26 +67,8 @@ DynamicModel dynamic_model_of(std::uint64_t number) {
 }
 
 std::uint64_t dynamic_model_number(DynamicModel model) {
-    using enum DynamicModel;
-    switch (model) {
-        case portable:
-            return 0;
-        case stationary:
-            return 2;
-        case pedestrian:
-            return 3;
-        case automotive:
-            return 4;
-        case sea:
-            return 5;
-        case airborne_1g:
-            return 6;
-        case airborne_2g:
-            return 7;
-        case airborne_4g:
-            return 8;
-    }
-    return 0;
+    constexpr std::array<std::uint64_t, 8> numbers{0, 2, 3, 4, 5, 6, 7, 8};
+    return numbers[static_cast<std::size_t>(model)];
 }
 
 ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board, const ReceiverSettings& base) {

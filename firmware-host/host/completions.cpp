@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <map>
 #include <string_view>
 
@@ -44,25 +45,8 @@ std::string subcommand_patterns(std::span<const CommandRow> commands) {
 }
 
 std::string_view bash_kind(ValueKind kind) {
-    switch (kind) {
-        case ValueKind::none:
-            return "none";
-        case ValueKind::text:
-            return "text";
-        case ValueKind::words:
-            return "words";
-        case ValueKind::file:
-            return "file";
-        case ValueKind::folder:
-            return "folder";
-        case ValueKind::board:
-            return "board";
-        case ValueKind::fault:
-            return "fault";
-        case ValueKind::uri:
-            return "uri";
-    }
-    return "text";
+    constexpr std::array<std::string_view, 8> names{"none", "text", "words", "file", "folder", "board", "fault", "uri"};
+    return names[static_cast<std::size_t>(kind)];
 }
 
 // Names of options, and which of them take a value: one branch a command.

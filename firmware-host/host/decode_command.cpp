@@ -69,6 +69,10 @@ namespace {
 
 constexpr std::array<StreamKind, 6> all_kinds{StreamKind::ubx, StreamKind::nmea,    StreamKind::rtcm3,
                                               StreamKind::msp, StreamKind::mavlink, StreamKind::sbf};
+// What switches each of these on.
+constexpr std::array<bool StreamProtocols::*, 6> protocol_flags{&StreamProtocols::ubx,     &StreamProtocols::nmea,
+                                                                &StreamProtocols::rtcm3,   &StreamProtocols::msp,
+                                                                &StreamProtocols::mavlink, &StreamProtocols::sbf};
 
 // A tty that is silent for so long has sent all of its frame (RECEIVER.md 1.3).
 constexpr std::chrono::seconds frame_silence{2};
@@ -86,23 +90,6 @@ struct Wanted {
     std::vector<StreamKind> named;  // by the user; empty: all that are found
 };
 
-bool& flag_of(StreamProtocols& protocols, StreamKind kind) {
-    switch (kind) {
-        case StreamKind::ubx:
-            return protocols.ubx;
-        case StreamKind::nmea:
-            return protocols.nmea;
-        case StreamKind::rtcm3:
-            return protocols.rtcm3;
-        case StreamKind::msp:
-            return protocols.msp;
-        case StreamKind::mavlink:
-            return protocols.mavlink;
-        default:
-            return protocols.sbf;
-    }
-}
-
 bool is_automatic(const std::vector<std::string>& words) {
     return std::find(words.begin(), words.end(), "auto") != words.end();
 }
@@ -110,10 +97,10 @@ bool is_automatic(const std::vector<std::string>& words) {
 Wanted wanted_of(const std::vector<std::string>& words) {
     Wanted wanted;
     const bool automatic = is_automatic(words);
-    for (const StreamKind kind : all_kinds) {
-        const bool named = std::find(words.begin(), words.end(), stream_kind_name(kind)) != words.end();
-        flag_of(wanted.protocols, kind) = automatic || named;
-        if (named) wanted.named.push_back(kind);
+    for (std::size_t i = 0; i < all_kinds.size(); ++i) {
+        const bool named = std::ranges::find(words, stream_kind_name(all_kinds[i])) != words.end();
+        wanted.protocols.*protocol_flags[i] = automatic || named;
+        if (named) wanted.named.push_back(all_kinds[i]);
     }
     return wanted;
 }

@@ -1,7 +1,9 @@
 /// What a client configures: both ways, on one store.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/core/bytes.hpp"
@@ -77,6 +79,19 @@ private:
     const BoardProfile& board_;
     ConfigStore& store_;
 };
+
+/// The versions of NMEA as CFG-NMEA-PROTVER and as CFG-NMEA number them (F9 interface description, CFG-NMEA).
+struct NumberedNmeaVersion {
+    NmeaVersion version;
+    std::uint8_t item, wire;
+};
+inline constexpr std::array<NumberedNmeaVersion, 5> numbered_nmea_versions{{{NmeaVersion::v2_1, 21, 0x21},
+                                                                            {NmeaVersion::v2_3, 23, 0x23},
+                                                                            {NmeaVersion::v4_0, 40, 0x40},
+                                                                            {NmeaVersion::v4_10, 41, 0x41},
+                                                                            {NmeaVersion::v4_11, 42, 0x4B}}};
+/// By CFG-NMEA-MAINTALKERID. 0: by the systems; 6 stands for GI, which no receiver here has.
+inline constexpr std::array<std::string_view, 8> numbered_talkers{"", "GP", "GL", "GN", "GA", "GB", "", "GQ"};
 
 /// The factory configuration of a board: every item that it has.
 ConfigValues factory_config(const BoardProfile& board);

@@ -14,32 +14,20 @@ namespace {
 
 // The port that an item belongs to: by its group, by the order of CFG-INFMSG, by the order of CFG-MSGOUT.
 std::optional<PortId> port_of(const ConfigKey& key) {
-    switch (key.id >> 16 & 0xFF) {
-        case 0x51:
-        case 0x71:
-        case 0x72:
-            return PortId::i2c;
-        case 0x52:
-        case 0x73:
-        case 0x74:
-            return PortId::uart1;
-        case 0x53:
-        case 0x75:
-        case 0x76:
-            return PortId::uart2;
-        case 0x65:
-        case 0x77:
-        case 0x78:
-            return PortId::usb;
-        case 0x64:
-        case 0x79:
-        case 0x7A:
-            return PortId::spi;
-        case 0x92:
-            return static_cast<PortId>(((key.id & 0xFFFF) - 1) % port_count);
-        default:
-            return std::nullopt;
-    }
+    constexpr struct {
+        PortId port;
+        std::uint32_t itself, in_protocols, out_protocols;
+    } groups[] = {{PortId::i2c, 0x51, 0x71, 0x72},
+                  {PortId::uart1, 0x52, 0x73, 0x74},
+                  {PortId::uart2, 0x53, 0x75, 0x76},
+                  {PortId::usb, 0x65, 0x77, 0x78},
+                  {PortId::spi, 0x64, 0x79, 0x7A}};
+    constexpr std::uint32_t infmsg = 0x92;
+    const std::uint32_t group = key.id >> 16 & 0xFF;
+    if (group == infmsg) return static_cast<PortId>(((key.id & 0xFFFF) - 1) % port_count);
+    for (const auto& [port, itself, in, out] : groups)
+        if (group == itself || group == in || group == out) return port;
+    return std::nullopt;
 }
 
 // Items of CFG-MSGOUT of ports that the board does not have.
@@ -73,28 +61,14 @@ private:
     ConfigValues& values_;
 };
 
-// CFG-NMEA-PROTVER (F9 interface description, CFG-NMEA).
 std::uint64_t number_of(NmeaVersion version) {
-    switch (version) {
-        case NmeaVersion::v2_1:
-            return 21;
-        case NmeaVersion::v2_3:
-            return 23;
-        case NmeaVersion::v4_0:
-            return 40;
-        case NmeaVersion::v4_10:
-            return 41;
-        case NmeaVersion::v4_11:
-            break;
-    }
-    return 42;
+    return std::ranges::find(numbered_nmea_versions, version, &NumberedNmeaVersion::version)->item;
 }
 
-// CFG-NMEA-MAINTALKERID; 0: by the systems.
+// 0 for one that has no number: by the systems.
 std::uint64_t number_of_talker(std::string_view talker) {
-    constexpr std::array<std::string_view, 8> talkers{"", "GP", "GL", "GN", "GA", "GB", "", "GQ"};
-    const auto found = std::find(talkers.begin(), talkers.end(), talker);
-    return found == talkers.end() ? 0 : static_cast<std::uint64_t>(found - talkers.begin());
+    const auto found = std::ranges::find(numbered_talkers, talker);
+    return found == numbered_talkers.end() ? 0 : static_cast<std::uint64_t>(found - numbered_talkers.begin());
 }
 
 void write_signals(const BoardProfile& board, FactoryWriter& writer) {

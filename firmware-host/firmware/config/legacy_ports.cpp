@@ -262,18 +262,12 @@ constexpr BitKey nmea_flags[] = {
 constexpr BitKey nmea_gnss_filter[] = {{0, key::nmea_filt_gps},  {1, key::nmea_filt_sbas}, {2, key::nmea_filt_gal},
                                        {4, key::nmea_filt_qzss}, {5, key::nmea_filt_glo},  {6, key::nmea_filt_bds}};
 
-/// Versions as CFG-NMEA-PROTVER and as CFG-NMEA numbers them.
-struct NumberedVersion {
-    std::uint8_t item, wire;
-};
-constexpr NumberedVersion numbered_versions[] = {{21, 0x21}, {23, 0x23}, {40, 0x40}, {41, 0x41}, {42, 0x4B}};
-
 CfgNmeaCore describe_core(const LegacyContext& context) {
     CfgNmeaCore core;
     core.filter = static_cast<std::uint8_t>(bits_in_force(context, nmea_filter));
     const auto* const version =
-        std::ranges::find(numbered_versions, context.store.value(key::nmea_protver), &NumberedVersion::item);
-    if (version != std::end(numbered_versions)) core.nmea_version = version->wire;
+        std::ranges::find(numbered_nmea_versions, context.store.value(key::nmea_protver), &NumberedNmeaVersion::item);
+    if (version != std::end(numbered_nmea_versions)) core.nmea_version = version->wire;
     core.num_sv = in_force<std::uint8_t>(context, key::nmea_maxsvs);
     core.flags = static_cast<std::uint8_t>(bits_in_force(context, nmea_flags));
     return core;
@@ -303,8 +297,9 @@ ConfigOutcome poll_nmea(const LegacyContext& context) {
 
 /// False for a version of NMEA that no receiver has.
 bool put_core(LegacyChanges& changes, const CfgNmeaCore& core) {
-    const auto* const version = std::ranges::find(numbered_versions, core.nmea_version, &NumberedVersion::wire);
-    if (version == std::end(numbered_versions)) return false;
+    const auto* const version =
+        std::ranges::find(numbered_nmea_versions, core.nmea_version, &NumberedNmeaVersion::wire);
+    if (version == std::end(numbered_nmea_versions)) return false;
     changes.put_bits(nmea_filter, core.filter);
     changes.put(key::nmea_protver, version->item);
     changes.put(key::nmea_maxsvs, core.num_sv);

@@ -157,30 +157,13 @@ std::uint8_t sv_id(SatelliteId satellite) {
 }
 
 std::optional<std::uint8_t> ubx_single_number(SatelliteId satellite) {
+    using enum Constellation;
     const int n = satellite.number;
-    int number = n;
-    switch (satellite.constellation) {
-        case Constellation::gps:
-            break;
-        case Constellation::sbas:
-            number = n + 100;
-            break;
-        case Constellation::galileo:
-            number = n + 210;
-            break;
-        case Constellation::beidou:
-            if (n > 37) return std::nullopt;
-            number = n <= 5 ? n + 158 : n + 27;
-            break;
-        case Constellation::qzss:
-            number = n + 192;
-            break;
-        case Constellation::glonass:
-            number = n + 64;
-            break;
-        case Constellation::navic:
-            return std::nullopt;
-    }
+    if (satellite.constellation == navic || (satellite.constellation == beidou && n > 37)) return std::nullopt;
+    // By the constellation; BeiDou's first five stand apart from its others.
+    constexpr int before_first[] = {0, 100, 210, 27, 192, 64};
+    const bool apart = satellite.constellation == beidou && n <= 5;
+    const int number = n + (apart ? 158 : before_first[static_cast<std::size_t>(satellite.constellation)]);
     if (number < 1 || number > 254) return std::nullopt;
     return static_cast<std::uint8_t>(number);
 }

@@ -54,20 +54,8 @@ MonGnss systems(const ReportContext& context) {
     return m;
 }
 
-// MON-SYS bootType (RECEIVER.md 3.2).
-std::uint8_t boot_type_of(BootCause cause) {
-    switch (cause) {
-        case BootCause::power:
-            return 1;  // cold
-        case BootCause::hardware_reset:
-            return 3;
-        case BootCause::software_reset:
-            return 6;
-        case BootCause::backup:
-            return 5;  // of the software's own doing
-    }
-    return 0;
-}
+// MON-SYS bootType by BootCause: 1 cold, 3 and 6 resets, 5 of the software's own doing (RECEIVER.md 3.2).
+constexpr std::array<std::uint8_t, 4> boot_types{1, 3, 6, 5};
 
 // The load that tracking takes: that of a captured ZED-F9P, 22 % with 20 satellites.
 MonSys system_load(const ReportContext& context) {
@@ -76,7 +64,7 @@ MonSys system_load(const ReportContext& context) {
     const auto tracked =
         std::count_if(satellites.begin(), satellites.end(), [](const SatelliteStatus& s) { return s.cn0.has_value(); });
     MonSys m;
-    m.boot_type = boot_type_of(context.state.boot_cause);
+    m.boot_type = boot_types[static_cast<std::size_t>(context.state.boot_cause)];
     m.cpu_load = m.cpu_load_max =
         field<std::uint8_t>(std::min(100.0, idle_percent + percent_per_satellite * static_cast<double>(tracked)));
     m.mem_usage = 8;

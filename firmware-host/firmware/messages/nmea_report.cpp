@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "firmware/config/config_handler.hpp"
 #include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 
@@ -46,20 +47,9 @@ SolutionFlags flags_beyond_limits(FixType type) {
 }
 
 NmeaVersion configured_version(const BoardProfile& board, const ConfigStore& config) {
-    switch (config.value(key::nmea_protver)) {
-        case 21:
-            return NmeaVersion::v2_1;
-        case 23:
-            return NmeaVersion::v2_3;
-        case 40:
-            return NmeaVersion::v4_0;
-        case 41:
-            return NmeaVersion::v4_10;
-        case 42:
-            return NmeaVersion::v4_11;
-        default:
-            return board.nmea_version;
-    }
+    const auto found =
+        std::ranges::find(numbered_nmea_versions, config.value(key::nmea_protver), &NumberedNmeaVersion::item);
+    return found == numbered_nmea_versions.end() ? board.nmea_version : found->version;
 }
 
 // Two characters of CFG-NMEA-BDSTALKERID, or the board's own.
@@ -76,25 +66,16 @@ std::string own_talker(const NmeaSystem& system, const BoardProfile& board, cons
     return std::string(system.talker);
 }
 
-// CFG-NMEA-FILT_… takes a system out of the output.
+// CFG-NMEA-FILT_… takes a system out of the output. NavIC has no such item, and none is not set.
 bool is_filtered(Constellation constellation, const ConfigStore& config) {
-    switch (constellation) {
-        case Constellation::gps:
-            return config.flag(key::nmea_filt_gps);
-        case Constellation::sbas:
-            return config.flag(key::nmea_filt_sbas);
-        case Constellation::galileo:
-            return config.flag(key::nmea_filt_gal);
-        case Constellation::beidou:
-            return config.flag(key::nmea_filt_bds);
-        case Constellation::qzss:
-            return config.flag(key::nmea_filt_qzss);
-        case Constellation::glonass:
-            return config.flag(key::nmea_filt_glo);
-        case Constellation::navic:
-            return false;
-    }
-    return false;
+    constexpr std::array<std::uint32_t, 7> items{key::nmea_filt_gps,
+                                                 key::nmea_filt_sbas,
+                                                 key::nmea_filt_gal,
+                                                 key::nmea_filt_bds,
+                                                 key::nmea_filt_qzss,
+                                                 key::nmea_filt_glo,
+                                                 0};
+    return config.flag(items[static_cast<std::size_t>(constellation)]);
 }
 
 void add_groups(NmeaReport& r, const std::vector<Constellation>& listed) {
@@ -178,9 +159,9 @@ void add_position_and_motion(NmeaReport& r) {
 }  // namespace
 
 std::string nmea_talker(const BoardProfile& board, const ConfigStore& config) {
-    constexpr std::array<std::string_view, 8> configured{"", "GP", "GL", "GN", "GA", "GB", "", "GQ"};
     const std::uint64_t number = config.value(key::nmea_main_talker);
-    if (number < configured.size() && !configured[number].empty()) return std::string(configured[number]);
+    if (number < numbered_talkers.size() && !numbered_talkers[number].empty())
+        return std::string(numbered_talkers[number]);
     if (!board.main_talker.empty()) return board.main_talker;
     const NmeaVersion version = configured_version(board, config);
     if (version == NmeaVersion::v2_1 || config.flag(key::nmea_out_onlygps)) return "GP";

@@ -109,29 +109,12 @@ NavOrb orbits(const ReportContext& context) {
 
 // Whose satellite a PRN is (ICAO SARPs, SBAS providers of 2024): 0 WAAS, 1 EGNOS, 2 MSAS, 3 GAGAN, −1 another.
 std::int8_t sbas_system(std::uint8_t prn) {
-    switch (prn) {
-        case 131:
-        case 133:
-        case 135:
-        case 138:
-            return 0;
-        case 120:
-        case 121:
-        case 123:
-        case 124:
-        case 126:
-        case 136:
-            return 1;
-        case 129:
-        case 137:
-            return 2;
-        case 127:
-        case 128:
-        case 132:
-            return 3;
-        default:
-            return -1;
-    }
+    constexpr std::pair<std::uint8_t, std::int8_t> systems[] = {{131, 0}, {133, 0}, {135, 0}, {138, 0}, {120, 1},
+                                                                {121, 1}, {123, 1}, {124, 1}, {126, 1}, {136, 1},
+                                                                {129, 2}, {137, 2}, {127, 3}, {128, 3}, {132, 3}};
+    for (const auto& [number, system] : systems)
+        if (number == prn) return system;
+    return -1;
 }
 
 // With corrections of SBAS in use, the strongest of its satellites is the one that they come from.

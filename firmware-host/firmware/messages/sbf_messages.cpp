@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/geo/local_frame.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/other_protocols.hpp"
-#include "base/geo/local_frame.hpp"
 #include "firmware/solution_covariance.hpp"
 #include "world/gnss/constants.hpp"
 
