@@ -20,7 +20,7 @@ struct MavlinkSent {
 
 /// What a receiver of this personality sends at every epoch, in order: msp MSP2_SENSOR_GPS; msp_v1 MSP_SET_RAW_GPS;
 /// mavlink GPS_INPUT, and HEARTBEAT before the first one of each second. Nothing for the others; what sbf sends, its
-/// streams say (septentrio/output.hpp).
+/// streams say (septentrio/console.hpp).
 std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context, MavlinkSent& sent);
 
 /// Its values without a fix: fix type 0, the last position, zeros before the first, velocity 0, accuracies 65535, DOP
