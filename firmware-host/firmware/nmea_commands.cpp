@@ -52,8 +52,27 @@ std::optional<int> NumberedCommand::argument(std::size_t i) const { return numbe
 
 void NumberedCommand::answer(const std::string& body) { outcome.answers.push_back(to_bytes(Sentence(body).finish())); }
 
-int least_fix_interval(const BoardProfile& board) {
-    return std::max(board.least_measurement_period_ms, static_cast<int>(std::ceil(1000.0 / board.max_rate_hz - 1e-6)));
+std::optional<int> NumberedCommand::argument_within(std::size_t i, int least, int most) const {
+    const auto value = argument(i);
+    return value && *value >= least && *value <= most ? value : std::nullopt;
+}
+
+bool NumberedCommand::set_fix_interval(ConfigLayers layers, int period) {
+    const int least =
+        std::max(board.least_measurement_period_ms, static_cast<int>(std::ceil(1000.0 / board.max_rate_hz - 1e-6)));
+    if (period < least || !is_in_range(board, key::rate_meas, static_cast<std::uint64_t>(period))) return false;
+    store.set(layers, key::rate_meas, static_cast<std::uint64_t>(period));
+    store.set(layers, key::rate_nav, 1);
+    return true;
+}
+
+std::uint64_t NumberedCommand::fix_interval() const {
+    return store.value(key::rate_meas) * std::max<std::uint64_t>(1, store.value(key::rate_nav));
+}
+
+std::optional<std::uint32_t> NumberedCommand::sentence_item(std::string_view name) const {
+    const OutputMessage* message = find_output_message(name);
+    return message == nullptr ? std::nullopt : rate_key(message->id, from);
 }
 
 std::vector<Bytes> version_answers(const BoardProfile& board, std::string_view prefix) {

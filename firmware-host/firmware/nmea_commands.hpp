@@ -34,8 +34,22 @@ struct NumberedCommand {
     CommandOutcome outcome{};
 
     [[nodiscard]] std::optional<int> argument(std::size_t i) const;
+    /// Nothing as well for one that is not among least … most.
+    [[nodiscard]] std::optional<int> argument_within(std::size_t i, int least, int most) const;
     /// @param body of a sentence, without "$" and checksum
     void answer(const std::string& body);
+    /// The time between two fixes, ms. False, and nothing changed, for one that the board cannot do.
+    bool set_fix_interval(ConfigLayers layers, int period);
+    [[nodiscard]] std::uint64_t fix_interval() const;
+    /// Every how many epochs the port sends a sentence, "GGA"; nothing for a name that stands for none.
+    [[nodiscard]] std::optional<std::uint32_t> sentence_item(std::string_view name) const;
+};
+
+/// A row of the tables that say which function executes which command.
+template <class Command>
+struct CommandRow {
+    int number;
+    void (*execute)(Command&);
 };
 
 /// Executes one checked sentence by the board's personality; what it configures is in the store afterwards, port
@@ -61,8 +75,5 @@ bool set_systems(const BoardProfile& board, ConfigStore& store, ConfigLayers lay
 
 /// The board's version answers that begin with "$" and `prefix`, as sentences.
 std::vector<Bytes> version_answers(const BoardProfile& board, std::string_view prefix);
-
-/// The shortest time between two fixes that the board can be asked for, ms.
-int least_fix_interval(const BoardProfile& board);
 
 }  // namespace skyloop::firmware

@@ -47,19 +47,14 @@ void tell_pair_version(PairCommand& c) {
 
 void set_fix_interval(PairCommand& c) {
     constexpr int longest = 1000;
-    const auto period = c.argument(0);
-    if (!period || *period < least_fix_interval(c.board) || *period > longest ||
-        !is_in_range(c.board, key::rate_meas, static_cast<std::uint64_t>(*period)))
-        return c.acknowledge(PairResult::failed);
-    c.store.set(pair_layers, key::rate_meas, static_cast<std::uint64_t>(*period));
-    c.store.set(pair_layers, key::rate_nav, 1);
-    c.acknowledge(PairResult::done);
+    const auto period = c.argument_within(0, 0, longest);
+    const bool taken = period && c.set_fix_interval(pair_layers, *period);
+    c.acknowledge(taken ? PairResult::done : PairResult::failed);
 }
 
 void tell_fix_interval(PairCommand& c) {
     c.acknowledge(PairResult::done);
-    c.answer(fmt::format("PAIR051,{}",
-                         c.store.value(key::rate_meas) * std::max<std::uint64_t>(1, c.store.value(key::rate_nav))));
+    c.answer(fmt::format("PAIR051,{}", c.fix_interval()));
 }
 
 constexpr std::array<std::string_view, 10> sentence_types{"GGA", "GLL", "GSA", "GSV", "RMC",
@@ -72,9 +67,7 @@ std::map<int, std::uint32_t> asked_types(const PairCommand& c) {
     const auto asked = c.argument(0);
     for (int type = 0; asked && type < static_cast<int>(sentence_types.size()); ++type) {
         if (*asked != all && *asked != type) continue;
-        const OutputMessage* message = find_output_message(sentence_types[static_cast<std::size_t>(type)]);
-        const auto item = message == nullptr ? std::nullopt : rate_key(message->id, c.from);
-        if (item) items[type] = *item;
+        if (const auto item = c.sentence_item(sentence_types[static_cast<std::size_t>(type)])) items[type] = *item;
     }
     return items;
 }
@@ -82,8 +75,8 @@ std::map<int, std::uint32_t> asked_types(const PairCommand& c) {
 void set_sentence_rate(PairCommand& c) {
     constexpr int most = 20;
     const auto items = asked_types(c);
-    const auto rate = c.argument(1);
-    if (items.empty() || !rate || *rate < 0 || *rate > most) return c.acknowledge(PairResult::failed);
+    const auto rate = c.argument_within(1, 0, most);
+    if (items.empty() || !rate) return c.acknowledge(PairResult::failed);
     for (const auto& [type, item] : items)
         c.store.set(pair_layers, item, static_cast<std::uint64_t>(*rate));
     c.acknowledge(PairResult::done);
@@ -103,8 +96,8 @@ void set_pair_systems(PairCommand& c) {
                                           Constellation::beidou, Constellation::qzss,    Constellation::navic};
     std::vector<std::pair<Constellation, bool>> wanted;
     for (std::size_t i = 0; i < std::size(in_order) && i < c.sentence.fields.size(); ++i) {
-        const auto on = c.argument(i);
-        if (!on || *on < 0 || *on > 1) return c.acknowledge(PairResult::failed);
+        const auto on = c.argument_within(i, 0, 1);
+        if (!on) return c.acknowledge(PairResult::failed);
         wanted.emplace_back(in_order[i], *on == 1);
     }
     const bool taken = !wanted.empty() && set_systems(c.board, c.store, at_next_start, wanted);
@@ -120,24 +113,22 @@ constexpr NavigationMode navigation_modes[] = {{0, 0}, {1, 3}, {4, 2}, {5, 8}, {
 
 void set_navigation_mode(PairCommand& c) {
     const auto mode = c.argument(0);
-    const auto* row = std::find_if(std::begin(navigation_modes), std::end(navigation_modes),
-                                   [&](const NavigationMode& m) { return m.mode == mode.value_or(-1); });
+    const auto* row = std::ranges::find(navigation_modes, mode.value_or(-1), &NavigationMode::mode);
     if (row == std::end(navigation_modes)) return c.acknowledge(PairResult::failed);
     c.store.set(pair_layers, key::navspg_dynmodel, row->dynamic_model);
     c.acknowledge(PairResult::done);
 }
 
 void set_pair_corrections(PairCommand& c) {
-    const auto source = c.argument(0);
-    if (!source || *source < 0 || *source > 2) return c.acknowledge(PairResult::failed);
+    const auto source = c.argument_within(0, 0, 2);
+    if (!source) return c.acknowledge(PairResult::failed);
     set_correction_source(c.store, c.from, static_cast<AidingSource>(*source));
     c.acknowledge(PairResult::done);
 }
 
 void set_pair_sbas(PairCommand& c) {
-    const auto on = c.argument(0);
-    const bool good =
-        on && *on >= 0 && *on <= 1 && set_systems(c.board, c.store, pair_layers, {{Constellation::sbas, *on == 1}});
+    const auto on = c.argument_within(0, 0, 1);
+    const bool good = on && set_systems(c.board, c.store, pair_layers, {{Constellation::sbas, *on == 1}});
     c.acknowledge(good ? PairResult::done : PairResult::failed);
 }
 
@@ -164,11 +155,7 @@ void set_pair_speed(PairCommand& c) {
     c.acknowledge(PairResult::done);
 }
 
-struct PairRow {
-    int number;
-    void (*execute)(PairCommand&);
-};
-constexpr PairRow pair_rows[] = {
+constexpr CommandRow<PairCommand> pair_rows[] = {
     {2, switch_positioning}, {3, switch_positioning},   {4, restart_pair},           {5, restart_pair},
     {6, restart_pair},       {7, restart_pair},         {20, tell_pair_version},     {21, tell_pair_version},
     {50, set_fix_interval},  {51, tell_fix_interval},   {62, set_sentence_rate},     {63, tell_sentence_rate},
@@ -184,8 +171,7 @@ CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& bo
     const auto number = number_in<int>(sentence.address.substr(prefix.size()));
     if (!number || *number < 0 || *number > 999) return {};
     PairCommand command{{sentence, board, store, from, *number}};
-    const auto* row =
-        std::find_if(std::begin(pair_rows), std::end(pair_rows), [&](const PairRow& r) { return r.number == *number; });
+    const auto* row = std::ranges::find(pair_rows, *number, &CommandRow<PairCommand>::number);
     if (row == std::end(pair_rows))
         command.acknowledge(PairResult::unsupported);
     else

@@ -26,8 +26,7 @@ void accept_pmtk(PmtkCommand& c) { c.acknowledge(PmtkFlag::done); }
 
 // 161: stopped (0) or asleep (1), which differ in what they draw.
 void stand_by(PmtkCommand& c) {
-    const auto kind = c.argument(0);
-    if (!kind || *kind < 0 || *kind > 1) return c.acknowledge(PmtkFlag::invalid);
+    if (!c.argument_within(0, 0, 1)) return c.acknowledge(PmtkFlag::invalid);
     c.acknowledge(PmtkFlag::done);
     c.outcome.standby = true;
 }
@@ -44,21 +43,14 @@ void restart_pmtk(PmtkCommand& c) {
 // 220 and 300: the time between two fixes, ms.
 void set_interval(PmtkCommand& c) {
     constexpr int shortest = 100, longest = 10000;
-    const auto period = c.argument(0);
-    if (!period || *period < shortest || *period > longest) return c.acknowledge(PmtkFlag::invalid);
-    if (*period < least_fix_interval(c.board) ||
-        !is_in_range(c.board, key::rate_meas, static_cast<std::uint64_t>(*period)))
-        return c.acknowledge(PmtkFlag::failed);
-    c.store.set(pmtk_layers, key::rate_meas, static_cast<std::uint64_t>(*period));
-    c.store.set(pmtk_layers, key::rate_nav, 1);
-    c.acknowledge(PmtkFlag::done);
+    const auto period = c.argument_within(0, shortest, longest);
+    if (!period) return c.acknowledge(PmtkFlag::invalid);
+    c.acknowledge(c.set_fix_interval(pmtk_layers, *period) ? PmtkFlag::done : PmtkFlag::failed);
 }
 
 void tell_interval(PmtkCommand& c) {
     c.acknowledge(PmtkFlag::done);
-    const std::uint64_t period =
-        c.store.value(key::rate_meas) * std::max<std::uint64_t>(1, c.store.value(key::rate_nav));
-    c.answer(fmt::format("PMTK500,{},0,0,0.0,0.0", period));
+    c.answer(fmt::format("PMTK500,{},0,0,0.0,0.0", c.fix_interval()));
 }
 
 // 251: no acknowledgement, the new speed holds at once; 0 is the factory's.
@@ -76,11 +68,6 @@ void set_speed(PmtkCommand& c) {
 constexpr std::array<std::string_view, 19> sentence_places{
     "GLL", "RMC", "VTG", "GGA", "GSA", "GSV", "GRS", "GST", "", "", "", "", "", "", "", "", "", "ZDA", ""};
 
-std::optional<std::uint32_t> place_key(std::size_t place, PortId port) {
-    const OutputMessage* message = find_output_message(sentence_places[place]);
-    return message == nullptr ? std::nullopt : rate_key(message->id, port);
-}
-
 void set_sentences(PmtkCommand& c) {
     constexpr int most = 5;
     constexpr std::size_t fewest = 17;
@@ -88,12 +75,10 @@ void set_sentences(PmtkCommand& c) {
     const bool defaults = fields.size() == 1 && fields[0] == "-1";
     if (!defaults && (fields.size() < fewest || fields.size() > sentence_places.size()))
         return c.acknowledge(PmtkFlag::invalid);
-    for (std::size_t i = 0; !defaults && i < fields.size(); ++i) {
-        const auto divider = c.argument(i);
-        if (!divider || *divider < 0 || *divider > most) return c.acknowledge(PmtkFlag::invalid);
-    }
+    for (std::size_t i = 0; !defaults && i < fields.size(); ++i)
+        if (!c.argument_within(i, 0, most)) return c.acknowledge(PmtkFlag::invalid);
     for (std::size_t i = 0; i < sentence_places.size(); ++i) {
-        const auto item = place_key(i, c.from);
+        const auto item = c.sentence_item(sentence_places[i]);
         if (!item || (!defaults && i >= fields.size())) continue;
         const std::uint64_t rate = defaults ? c.store.stored(ConfigLayer::factory, *item).value_or(0)
                                             : static_cast<std::uint64_t>(*c.argument(i));
@@ -105,7 +90,7 @@ void set_sentences(PmtkCommand& c) {
 void tell_sentences(PmtkCommand& c) {
     std::string body = "PMTK514";
     for (std::size_t i = 0; i < sentence_places.size(); ++i) {
-        const auto item = place_key(i, c.from);
+        const auto item = c.sentence_item(sentence_places[i]);
         body += fmt::format(",{}", item ? c.store.value(*item) : 0);
     }
     c.acknowledge(PmtkFlag::done);
@@ -113,8 +98,8 @@ void tell_sentences(PmtkCommand& c) {
 }
 
 void set_corrections(PmtkCommand& c) {
-    const auto source = c.argument(0);
-    if (!source || *source < 0 || *source > 2) return c.acknowledge(PmtkFlag::invalid);
+    const auto source = c.argument_within(0, 0, 2);
+    if (!source) return c.acknowledge(PmtkFlag::invalid);
     set_correction_source(c.store, c.from, static_cast<AidingSource>(*source));
     c.acknowledge(PmtkFlag::done);
 }
@@ -125,8 +110,8 @@ void tell_corrections(PmtkCommand& c) {
 }
 
 void set_sbas(PmtkCommand& c) {
-    const auto on = c.argument(0);
-    if (!on || *on < 0 || *on > 1) return c.acknowledge(PmtkFlag::invalid);
+    const auto on = c.argument_within(0, 0, 1);
+    if (!on) return c.acknowledge(PmtkFlag::invalid);
     const bool taken = set_systems(c.board, c.store, pmtk_layers, {{Constellation::sbas, *on == 1}});
     c.acknowledge(taken ? PmtkFlag::done : PmtkFlag::failed);
 }
@@ -145,8 +130,8 @@ void set_constellations(PmtkCommand& c) {
     std::string echo;
     for (std::size_t i = 0; i < std::size(in_order); ++i) {
         const bool given = i < c.sentence.fields.size();
-        const auto on = given ? c.argument(i) : std::optional(0);
-        if (!on || *on < 0 || *on > 1) return c.acknowledge(PmtkFlag::invalid);
+        const auto on = given ? c.argument_within(i, 0, 1) : std::optional(0);
+        if (!on) return c.acknowledge(PmtkFlag::invalid);
         echo += fmt::format(",{}", *on);
         if (i == full_galileo)
             wanted.back().second = wanted.back().second || *on == 1;
@@ -172,12 +157,8 @@ void tell_version(PmtkCommand& c) {
     if (c.outcome.answers.empty()) c.acknowledge(PmtkFlag::unsupported);
 }
 
-struct PmtkRow {
-    int number;
-    void (*execute)(PmtkCommand&);
-};
 // 869, the receiver's own orbit prediction: taken, without effect.
-constexpr PmtkRow pmtk_rows[] = {
+constexpr CommandRow<PmtkCommand> pmtk_rows[] = {
     {0, accept_pmtk},
     {101, restart_pmtk},
     {102, restart_pmtk},
@@ -214,8 +195,7 @@ CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& bo
     const auto number = number_in<int>(sentence.address.substr(prefix.size()));
     if (!number || *number < 0 || *number > 999) return {};
     command.number = *number;
-    const auto* row =
-        std::find_if(std::begin(pmtk_rows), std::end(pmtk_rows), [&](const PmtkRow& r) { return r.number == *number; });
+    const auto* row = std::ranges::find(pmtk_rows, *number, &CommandRow<PmtkCommand>::number);
     if (row == std::end(pmtk_rows))
         command.acknowledge(PmtkFlag::unsupported);
     else
