@@ -12,7 +12,7 @@
 
 #include "base/core/result.hpp"
 #include "campaigns/campaign/campaign_plan.hpp"
-#include "wire/transport/file_descriptor.hpp"
+#include "base/core/file_descriptor.hpp"
 
 namespace skyloop::inline campaigns {
 

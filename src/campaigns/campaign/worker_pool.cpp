@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "wire/transport/file_descriptor.hpp"
+#include "base/core/file_descriptor.hpp"
 
 namespace skyloop::inline campaigns {
 

@@ -34,6 +34,12 @@ constexpr std::array ulog_types{ulog_type<std::int8_t>("int8_t"),   ulog_type<st
                                 ulog_type<std::int64_t>("int64_t"), ulog_type<std::uint64_t>("uint64_t"),
                                 ulog_type<float>("float"),          ulog_type<double>("double")};
 
+// The plain type of that name, or null for a nested format.
+const UlogType* plain_type(std::string_view name) {
+    const auto found = std::ranges::find(ulog_types, name, &UlogType::name);
+    return found == ulog_types.end() ? nullptr : &*found;
+}
+
 class UlogParser {
 public:
     UlogParser(ByteSpan bytes, const std::string& name, const std::vector<std::string_view>& topics)
@@ -183,10 +189,9 @@ std::optional<std::size_t> UlogParser::flatten(std::string_view format, const st
             if (budget_-- == 0) return std::nullopt;
             std::string key = prefix + std::string(field_name);
             if (bracket != std::string_view::npos) key += fmt::format("[{}]", i);
-            const auto plain = std::find_if(ulog_types.begin(), ulog_types.end(),
-                                            [type](const UlogType& known) { return known.name == type; });
+            const UlogType* plain = plain_type(type);
             if (fields.size() > most_fields || offset > ulog_longest) return std::nullopt;
-            if (plain != ulog_types.end()) {
+            if (plain != nullptr) {
                 fields[key] = {plain->read, offset, plain->size};
                 offset += plain->size;
             } else {
