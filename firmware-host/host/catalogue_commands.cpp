@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdio>
 
+#include "base/core/json.hpp"
 #include "base/core/words.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
@@ -84,7 +84,7 @@ struct FaultsOptions {
 };
 
 std::string one_of_all_json(std::string_view name) {
-    for (const auto& kind : nlohmann::ordered_json::parse(fault_kinds_json()))
+    for (const auto& kind : Json::parse(fault_kinds_json()))
         if (kind.at("name") == name) return kind.dump();
     return "null";
 }

@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/core/json.hpp"
 #include "base/core/number_text.hpp"
 #include "base/core/words.hpp"
 #include "commands.hpp"
@@ -20,8 +20,6 @@
 
 namespace skyloop::host {
 namespace {
-
-using CtlJson = nlohmann::ordered_json;
 
 struct CtlOptions {
     std::string token;
@@ -40,7 +38,7 @@ constexpr std::string_view ctl_usage =
     "  end                           ends the run\n"
     "  any other of the commands, with KEY=VALUE…: set_baud baud=9600 receiver=front";
 
-CtlJson ctl_scalar(std::string_view text) {
+Json ctl_scalar(std::string_view text) {
     if (text == "true" || text == "false") return text == "true";
     if (const auto number = number_in<double>(text)) return *number;
     return text;
@@ -48,9 +46,9 @@ CtlJson ctl_scalar(std::string_view text) {
 
 // "1,2" is a list, "a,b" too; the program at the other end knows what it wanted.
 template <class OneValue>
-CtlJson ctl_value(std::string_view text, OneValue one) {
+Json ctl_value(std::string_view text, OneValue one) {
     if (text.find(',') == std::string_view::npos) return one(text);
-    CtlJson list = CtlJson::array();
+    Json list = Json::array();
     while (true) {
         const std::size_t comma = text.find(',');
         list.push_back(one(text.substr(0, comma)));
@@ -60,13 +58,13 @@ CtlJson ctl_value(std::string_view text, OneValue one) {
 }
 
 // Names are texts, whatever they look like.
-CtlJson ctl_pair_value(std::string_view key, std::string_view text) {
-    const auto name = [](std::string_view one) { return CtlJson(one); };
+Json ctl_pair_value(std::string_view key, std::string_view text) {
+    const auto name = [](std::string_view one) { return Json(one); };
     if (key == "name" || key == "fault" || key == "text") return name(text);
     return key == "receiver" ? ctl_value(text, name) : ctl_value(text, ctl_scalar);
 }
 
-Result<CtlJson> with_pairs(CtlJson body, std::span<const std::string> pairs) {
+Result<Json> with_pairs(Json body, std::span<const std::string> pairs) {
     for (const std::string& pair : pairs) {
         const std::size_t equals = pair.find('=');
         if (equals == std::string::npos || equals == 0)
@@ -89,11 +87,9 @@ std::string percent_encoded(std::string_view text) {
 }
 
 ControlRequest ctl_get(std::string path) { return {"GET", std::move(path), {}, {}}; }
-ControlRequest ctl_post(std::string path, const CtlJson& body) {
-    return {"POST", std::move(path), {}, body.dump(-1, ' ', false, CtlJson::error_handler_t::replace)};
-}
+ControlRequest ctl_post(std::string path, const Json& body) { return {"POST", std::move(path), {}, json_text(body)}; }
 
-Result<ControlRequest> command_post(CtlJson body, std::span<const std::string> pairs) {
+Result<ControlRequest> command_post(Json body, std::span<const std::string> pairs) {
     const auto whole = with_pairs(std::move(body), pairs);
     if (!whole) return fail(whole.error());
     return ctl_post("/api/commands", *whole);
@@ -154,56 +150,56 @@ Result<ControlRequest> ctl_request(std::span<const std::string> words) {
     return misused_ctl_command(word, rest.size());
 }
 
-std::string number_text(const CtlJson& json, std::string_view format) {
+std::string number_text(const Json& json, std::string_view format) {
     return json.is_number() ? fmt::format(fmt::runtime(format), json.get<double>()) : std::string("-");
 }
 
-std::string receiver_text(const CtlJson& receiver) {
-    const CtlJson& fix = receiver.at("fix");
+std::string receiver_text(const Json& receiver) {
+    const Json& fix = receiver.at("fix");
     std::string text = fmt::format("{}: {}, {} satellites", receiver.at("name").get<std::string>(),
                                    fix.at("type").get<std::string>(), fix.at("satellites_used").get<int>());
-    if (const CtlJson& error = receiver.at("error"); error.is_object())
+    if (const Json& error = receiver.at("error"); error.is_object())
         text += fmt::format(", off by {} m east {} m north {} m up", number_text(error.at("east_m"), "{:+.1f}"),
                             number_text(error.at("north_m"), "{:+.1f}"), number_text(error.at("up_m"), "{:+.1f}"));
-    for (const CtlJson& wire : receiver.at("wires"))
+    for (const Json& wire : receiver.at("wires"))
         text += fmt::format("; {} {} {} B out {} B in {} lost", wire.at("port").get<std::string>(),
                             number_text(wire.at("baud"), "{:.0f}"), wire.at("bytes_out").get<std::uint64_t>(),
                             wire.at("bytes_in").get<std::uint64_t>(), wire.at("bytes_lost").get<std::uint64_t>());
     return text;
 }
 
-std::string status_text(const CtlJson& status, std::string_view separator) {
+std::string status_text(const Json& status, std::string_view separator) {
     std::string text =
         fmt::format("{} ({} s){}", status.at("time_utc").get<std::string>(),
                     number_text(status.at("elapsed_s"), "{:.1f}"), status.at("paused").get<bool>() ? " paused" : "");
-    for (const CtlJson& receiver : status.at("receivers"))
+    for (const Json& receiver : status.at("receivers"))
         text += std::string(separator) + receiver_text(receiver);
-    for (const CtlJson& bar : status.at("timeline"))
+    for (const Json& bar : status.at("timeline"))
         if (bar.at("active").get<bool>())
             text += fmt::format("{}fault {} ({})", separator, bar.at("name").get<std::string>(),
                                 bar.at("kind").get<std::string>());
     return text;
 }
 
-void print_kinds(const CtlJson& kinds) {
-    for (const CtlJson& kind : kinds) {
+void print_kinds(const Json& kinds) {
+    for (const Json& kind : kinds) {
         const std::string meaning = kind.value(kind.contains("effect") ? "effect" : "meaning", "");
         fmt::print("{:<24} {}\n", kind.at("name").get<std::string>(), meaning);
-        for (const CtlJson& one : kind.at("parameters"))
+        for (const Json& one : kind.at("parameters"))
             fmt::print("    {:<20} {}{}\n", one.at("name").get<std::string>(), one.at("meaning").get<std::string>(),
                        one.at("needed").get<bool>() ? " (needed)" : "");
     }
 }
 
 void print_answer(const CtlOptions& options, const ControlResponse& response) {
-    const CtlJson json = CtlJson::parse(response.body);
+    const Json json = Json::parse(response.body);
     if (options.json)
         fmt::print("{}\n", response.body);
     else if (options.words[1] == "status")
         fmt::print("{}\n", status_text(json, "\n  "));
     else if (json.is_array())
         print_kinds(json);
-    else if (const CtlJson accepted = json.value("accepted", CtlJson::object()); accepted.contains("kind"))
+    else if (const Json accepted = json.value("accepted", Json::object()); accepted.contains("kind"))
         fmt::print("accepted as {}\n", accepted.at("name").get<std::string>());
     else
         fmt::print("accepted\n");
@@ -223,7 +219,7 @@ std::string ctl_sentence(std::string sentence, const ControlResponse& response, 
 
 // 429 and what begins with 5 are the other end's; other refusals are the user's.
 Error refused_answer(const ControlResponse& response, const std::string& port) {
-    const CtlJson json = CtlJson::parse(response.body, nullptr, false);
+    const Json json = Json::parse(response.body, nullptr, false);
     const bool told = json.is_object() && json.contains("error") && json.at("error").is_string();
     const bool outside = response.status == 429 || response.status >= 500;
     return {outside ? ErrorCode::outside : ErrorCode::usage,
@@ -237,7 +233,7 @@ int watch_run(const CtlOptions& options, const ControlClient& client, const Mess
     const auto asked = client.ask(ctl_get("/api/status"));
     if (asked && asked->status == 401) return messages.error(refused_answer(*asked, options.words[0]));
     const auto watched = client.watch(1, [&](std::string_view text) {
-        fmt::print("{}\n", options.json ? std::string(text) : status_text(CtlJson::parse(text), " | "));
+        fmt::print("{}\n", options.json ? std::string(text) : status_text(Json::parse(text), " | "));
         return std::fflush(stdout) == 0;
     });
     return watched ? 0 : messages.error(watched.error());
@@ -267,7 +263,7 @@ int control_run(const CtlOptions& options) {
     try {
         const bool watch = options.words[1] == "watch" && options.words.size() == 2;
         return watch ? watch_run(options, client, messages) : ask_run(options, client, messages);
-    } catch (const CtlJson::exception& error) {
+    } catch (const Json::exception& error) {
         return messages.error(
             {ErrorCode::outside, fmt::format("the answer is not one of skyloop's: {}", error.what())});
     }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
-#include <nlohmann/json_fwd.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/json.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "messages.hpp"
@@ -31,14 +30,12 @@ std::string device_news_line(const DeviceNews& news);
 std::string known_devices_page(std::span<const DeviceProfile> profiles);
 
 /// The keys are written in docs/devices.md.
-nlohmann::ordered_json device_json(const DeviceEntry& device);
-nlohmann::ordered_json known_device_json(const DeviceProfile& profile);
+Json device_json(const DeviceEntry& device);
+Json known_device_json(const DeviceProfile& profile);
 /// On one line, whatever bytes its texts hold.
-std::string json_line(const nlohmann::ordered_json& json);
+std::string json_line(const Json& json);
 
 namespace {
-
-using DeviceJson = nlohmann::ordered_json;
 
 // What a device tells of itself may hold anything; on a terminal it is text.
 std::string printable(std::string_view text) {
@@ -116,16 +113,16 @@ std::string notes_cell(const DeviceProfile& profile) {
     return fmt::format("{}", fmt::join(notes, "; "));
 }
 
-DeviceJson texts_of_ids(const std::vector<UsbIds>& ids) {
-    DeviceJson list = DeviceJson::array();
+Json texts_of_ids(const std::vector<UsbIds>& ids) {
+    Json list = Json::array();
     for (const UsbIds pair : ids)
         list.push_back(to_string(pair));
     return list;
 }
 
-DeviceJson or_null(std::uint32_t number) { return number == 0 ? DeviceJson() : DeviceJson(number); }
+Json or_null(std::uint32_t number) { return number == 0 ? Json() : Json(number); }
 
-DeviceJson node_json(const DeviceNode& node) {
+Json node_json(const DeviceNode& node) {
     return {{"kind", node_kind_name(node.kind)},
             {"path", node.path},
             {"stable_path", node.stable_path},
@@ -183,20 +180,20 @@ std::string known_devices_page(std::span<const DeviceProfile> profiles) {
     return page;
 }
 
-DeviceJson device_json(const DeviceEntry& device) {
-    DeviceJson json{{"port_path", nullptr},
-                    {"usb", nullptr},
-                    {"manufacturer", ""},
-                    {"product", ""},
-                    {"serial", ""},
-                    {"kind", device.kind_name()},
-                    {"profile", nullptr},
-                    {"title", device.title()},
-                    {"bootloader", false},
-                    {"port", device.port()},
-                    {"nodes", DeviceJson::array()},
-                    {"hints", DeviceJson::array()},
-                    {"warnings", device_doubts(device)}};
+Json device_json(const DeviceEntry& device) {
+    Json json{{"port_path", nullptr},
+              {"usb", nullptr},
+              {"manufacturer", ""},
+              {"product", ""},
+              {"serial", ""},
+              {"kind", device.kind_name()},
+              {"profile", nullptr},
+              {"title", device.title()},
+              {"bootloader", false},
+              {"port", device.port()},
+              {"nodes", Json::array()},
+              {"hints", Json::array()},
+              {"warnings", device_doubts(device)}};
     if (device.usb) {
         json["port_path"] = device.usb->port_path;
         json["usb"] = to_string(device.usb->ids);
@@ -214,7 +211,7 @@ DeviceJson device_json(const DeviceEntry& device) {
     return json;
 }
 
-DeviceJson known_device_json(const DeviceProfile& profile) {
+Json known_device_json(const DeviceProfile& profile) {
     return {{"name", profile.name},
             {"title", profile.description},
             {"kind", device_kind_name(profile.kind)},
@@ -231,9 +228,7 @@ DeviceJson known_device_json(const DeviceProfile& profile) {
             {"hints", profile.hints}};
 }
 
-std::string json_line(const DeviceJson& json) {
-    return json.dump(-1, ' ', false, DeviceJson::error_handler_t::replace);
-}
+std::string json_line(const Json& json) { return json_text(json); }
 
 namespace {
 
@@ -251,7 +246,7 @@ bool is_root_hub(const DeviceEntry& device) { return device.usb && device.usb->p
 
 void print_known(std::span<const DeviceProfile> profiles, bool json) {
     if (!json) return fmt::print("{}", known_devices_page(profiles));
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    Json list = Json::array();
     for (const DeviceProfile& profile : profiles)
         list.push_back(known_device_json(profile));
     fmt::print("{}\n", json_line({{"known", list}}));
@@ -262,7 +257,7 @@ int print_devices(std::span<const DeviceProfile> profiles, const DevicesOptions&
     if (!devices) return messages.error(devices.error());
     std::erase_if(*devices, is_root_hub);
     if (options.json) {
-        nlohmann::ordered_json list = nlohmann::ordered_json::array();
+        Json list = Json::array();
         for (const DeviceEntry& device : *devices)
             list.push_back(device_json(device));
         fmt::print("{}\n", json_line({{"devices", list}}));

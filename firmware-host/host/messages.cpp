@@ -1,9 +1,9 @@
 #include "messages.hpp"
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/core/json.hpp"
 #include "base/core/words.hpp"
 
 namespace skyloop::host {
@@ -27,8 +27,7 @@ void Messages::say(std::string_view level, const std::string& text) const {
     std::string line;
     if (verbosity_.json)
         // Bytes of a file name need not be UTF-8; a message must not fail over them.
-        line = nlohmann::json{{"level", level}, {"message", text}}.dump(-1, ' ', false,
-                                                                        nlohmann::json::error_handler_t::replace);
+        line = json_text(JsonData{{"level", level}, {"message", text}});
     else
         line = (level == "error"     ? "skyloop: "
                 : level == "warning" ? "skyloop: warning: "

@@ -1,11 +1,11 @@
 #include "run_watch.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "file_streams.hpp"
 #include "run/control/command_json.hpp"
 #include "run/control/status_json.hpp"
@@ -17,8 +17,6 @@
 namespace skyloop::host {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* log_name = "commands.jsonl";
 
 Json line_at(GpsTime now, GpsTime start) {
@@ -26,7 +24,7 @@ Json line_at(GpsTime now, GpsTime start) {
 }
 
 void write_line(OutputFile& file, const Json& line) {
-    file.write(line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+    file.write(json_text(line) + "\n");
     // A line is rare, and what a killed run leaves behind should hold it.
     file.flush();
 }

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "file_streams.hpp"
@@ -200,17 +200,16 @@ void print_report(const SceneReport& report) {
     if (report.viewpoint) print_viewpoint(*report.viewpoint);
 }
 
-nlohmann::ordered_json place_json(const Geodetic& place) {
+Json place_json(const Geodetic& place) {
     return {place.latitude.deg(), place.longitude.deg(), place.height.above_ellipsoid.value()};
 }
 
-nlohmann::ordered_json viewpoint_json(const SceneViewpoint& view) {
-    nlohmann::ordered_json at{{"place", place_json(view.place)},
-                              {"east_m", view.antenna.x()},
-                              {"north_m", view.antenna.y()},
-                              {"up_m", view.antenna.z()}};
-    at["above_ground_m"] =
-        view.ground ? nlohmann::ordered_json(view.antenna.z() - *view.ground) : nlohmann::ordered_json(nullptr);
+Json viewpoint_json(const SceneViewpoint& view) {
+    Json at{{"place", place_json(view.place)},
+            {"east_m", view.antenna.x()},
+            {"north_m", view.antenna.y()},
+            {"up_m", view.antenna.z()}};
+    at["above_ground_m"] = view.ground ? Json(view.antenna.z() - *view.ground) : Json(nullptr);
     at["enclosed"] = view.enclosed;
     at["open_sky"] = view.mask.open_share();
     return at;
@@ -218,7 +217,7 @@ nlohmann::ordered_json viewpoint_json(const SceneViewpoint& view) {
 
 void print_json(const SceneReport& report) {
     const SceneStatistics& s = report.scene->statistics();
-    nlohmann::ordered_json out{
+    Json out{
         {"files", report.city.names},
         {"formats", report.city.formats},
         {"origin", place_json(report.scene->frame().origin())},
@@ -239,7 +238,7 @@ void print_json(const SceneReport& report) {
         {"warnings", report.city.warnings},
     };
     if (report.viewpoint) out["at"] = viewpoint_json(*report.viewpoint);
-    fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(out, 2));
 }
 
 Result<void> write_pictures(const SceneOptions& options, const SceneReport& report) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "base/core/words.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
@@ -44,8 +44,6 @@ std::string trajectory_text(const TrajectoryListing& listing);
 std::string trajectory_json(const TrajectoryListing& listing);
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A number and when it was so.
 std::string when_text(const PathExtreme& extreme, std::string_view unit) {
@@ -140,7 +138,7 @@ std::string trajectory_json(const TrajectoryListing& listing) {
                                     {"at_s", limit.found.at_s}});
     json["notes"] = listing.notes;
     // Names of files may hold what is no UTF-8.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(json, 2) + "\n";
 }
 
 namespace {

@@ -53,6 +53,12 @@ class CheckLayers(unittest.TestCase):
     def test_a_good_tree_is_taken(self):
         self.assertEqual(self.errors(), [])
 
+    def test_one_header_shows_json_to_sources_and_private_headers(self):
+        header = {"src/base/core/json.hpp": "#include <nlohmann/json.hpp>\n"}
+        include = '#include "base/core/json.hpp"\n'
+        self.assertEqual(self.errors(files={**header, "src/world/flow/x.cpp": include, "src/world/flow/detail/x.hpp": include}), [])
+        self.expect("a public header shows no JSON", {**header, "src/world/flow/x.hpp": include})
+
     def test_a_namespace_is_that_of_the_district_or_of_the_room_of_the_firmware(self):
         good = {"src/world/flow/x.cpp": "namespace skyloop::inline world {\nnamespace {\n}\n}\n",
                 "src/world/flow/y.cpp": "namespace skyloop::inline world::rinex {\n}\n",

@@ -5,10 +5,10 @@
 #include <unistd.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <unordered_map>
 
+#include "base/core/json.hpp"
 #include "campaigns/campaign/campaign_folder.hpp"
 #include "campaigns/campaign/shard_results.hpp"
 
@@ -150,7 +150,7 @@ void put_meta(Database& database, const KeptCampaign& kept) {
                                                                {"scenario_digest", kept.base},
                                                                {"planned", fmt::format("{}", kept.runs.size())},
                                                                {"campaign_file", "campaign.json"},
-                                                               {"options", nlohmann::json(kept.options).dump()}};
+                                                               {"options", JsonData(kept.options).dump()}};
     if (!kept.vehicle.empty()) rows.emplace_back("vehicle", kept.vehicle);
     for (const auto& [name, value] : rows)
         database.put(name).put(std::string_view(value)).add_row();

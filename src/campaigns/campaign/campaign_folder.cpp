@@ -6,14 +6,12 @@
 #include <sys/file.h>
 
 #include <cerrno>
-#include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 
 namespace skyloop::inline campaigns {
 namespace {
-
-using PlanJson = nlohmann::ordered_json;
 
 constexpr std::string_view plan_name = "campaign.json";
 // Beside the plan, which is replaced: a lock on it would be one on a file that is no more.
@@ -25,43 +23,43 @@ std::string runs_text(const CampaignPlan& plan) {
     std::string text = "[";
     for (std::uint64_t i = 0; i < plan.size(); ++i) {
         const PlannedRun run = plan.run(i);
-        PlanJson values = PlanJson::array();
+        Json values = Json::array();
         for (const CampaignValue& value : run.values)
             values.push_back(value.shown);
-        const PlanJson row = PlanJson::array({run.number, run.key, run.seed, values});
-        text += fmt::format("{}\n  {}", i > 0 ? "," : "", row.dump(-1, ' ', false, PlanJson::error_handler_t::replace));
+        const Json row = Json::array({run.number, run.key, run.seed, values});
+        text += fmt::format("{}\n  {}", i > 0 ? "," : "", json_text(row));
     }
     return text + "\n]";
 }
 
 std::string plan_text(const OpenedCampaign& campaign) {
     const ResultColumns& columns = campaign.setup.columns;
-    const std::vector<std::pair<std::string_view, PlanJson>> entries{{"form", 1},
-                                                                     {"name", campaign.name},
-                                                                     {"program_version", campaign.version},
-                                                                     {"scenario", campaign.setup.file.string()},
-                                                                     {"scenario_digest", campaign.plan.base()},
-                                                                     {"options", campaign.options},
-                                                                     {"vehicle", campaign.vehicle},
-                                                                     {"parameters", columns.parameters},
-                                                                     {"metrics", columns.metrics},
-                                                                     {"verdicts", columns.verdicts},
-                                                                     {"planned", campaign.plan.size()}};
+    const std::vector<std::pair<std::string_view, Json>> entries{{"form", 1},
+                                                                 {"name", campaign.name},
+                                                                 {"program_version", campaign.version},
+                                                                 {"scenario", campaign.setup.file.string()},
+                                                                 {"scenario_digest", campaign.plan.base()},
+                                                                 {"options", campaign.options},
+                                                                 {"vehicle", campaign.vehicle},
+                                                                 {"parameters", columns.parameters},
+                                                                 {"metrics", columns.metrics},
+                                                                 {"verdicts", columns.verdicts},
+                                                                 {"planned", campaign.plan.size()}};
     std::string text = "{\n";
     for (const auto& [name, value] : entries)
-        text += fmt::format(" \"{}\": {},\n", name, value.dump(-1, ' ', false, PlanJson::error_handler_t::replace));
+        text += fmt::format(" \"{}\": {},\n", name, json_text(value));
     return text + " \"runs\": " + runs_text(campaign.plan) + "\n}\n";
 }
 
 // Throws for what is no whole number from 0 on: a large one with a fraction has no integer that it could become.
-std::uint64_t whole_number(const nlohmann::json& value) {
+std::uint64_t whole_number(const JsonData& value) {
     if (!value.is_number_unsigned())
         throw std::runtime_error(fmt::format("has {}; expected a whole number", value.dump().substr(0, 40)));
     return value.get<std::uint64_t>();
 }
 
 // Throws where the file is none of ours; the caller says so.
-KeptCampaign campaign_from(const nlohmann::json& plan) {
+KeptCampaign campaign_from(const JsonData& plan) {
     KeptCampaign kept;
     if (whole_number(plan.at("form")) != 1) throw std::runtime_error("is of another form; expected form 1");
     plan.at("name").get_to(kept.name);
@@ -91,10 +89,9 @@ KeptCampaign campaign_from(const nlohmann::json& plan) {
 // What the plan that is there has columns for; of its runs, which may be a million, nothing is kept.
 Result<ResultColumns> columns_of_plan(std::string_view text, const std::string& name) {
     try {
-        const auto plan = nlohmann::json::parse(
-            text, [](int depth, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
-                return depth != 1 || event != nlohmann::json::parse_event_t::key || parsed != "runs";
-            });
+        const auto plan = JsonData::parse(text, [](int depth, JsonData::parse_event_t event, const JsonData& parsed) {
+            return depth != 1 || event != JsonData::parse_event_t::key || parsed != "runs";
+        });
         ResultColumns columns;
         plan.at("parameters").get_to(columns.parameters);
         plan.at("metrics").get_to(columns.metrics);
@@ -190,7 +187,7 @@ Result<FileDescriptor> keep_campaign(const std::filesystem::path& folder, const 
 
 Result<KeptCampaign> parse_kept_campaign(std::string_view text, const std::string& name) {
     try {
-        return campaign_from(nlohmann::json::parse(text));
+        return campaign_from(JsonData::parse(text));
     } catch (const std::exception& mistake) {
         return fail(ErrorCode::input, fmt::format("{}: {}; expected the plan that skyloop campaign --out has written",
                                                   name, std::string_view(mistake.what()).substr(0, 200)));

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <istream>
-#include <nlohmann/json.hpp>
 #include <ostream>
+
+#include "base/core/json.hpp"
 
 namespace skyloop::inline campaigns {
 namespace {
 
-using WorkerJson = nlohmann::json;
-
-std::string one_line(const WorkerJson& value) {
-    return value.dump(-1, ' ', false, WorkerJson::error_handler_t::replace);
-}
+std::string one_line(const JsonData& value) { return json_text(value); }
 
 tl::unexpected<Error> not_understood(const std::exception& mistake) {
     return fail(ErrorCode::outside, fmt::format("a line between worker and leader is not understood: {}",
@@ -22,7 +19,7 @@ tl::unexpected<Error> not_understood(const std::exception& mistake) {
 
 Result<CampaignRunSetup> setup_from(const std::string& line) {
     try {
-        const WorkerJson greeting = WorkerJson::parse(line);
+        const JsonData greeting = JsonData::parse(line);
         CampaignRunSetup setup;
         greeting.at("text").get_to(setup.text);
         setup.file = greeting.at("file").get<std::string>();
@@ -42,7 +39,7 @@ struct Question {
 
 Result<Question> question_from(const std::string& line) {
     try {
-        const WorkerJson json = WorkerJson::parse(line);
+        const JsonData json = JsonData::parse(line);
         Question question;
         json.at("number").get_to(question.run.number);
         json.at("key").get_to(question.run.key);
@@ -68,18 +65,18 @@ std::string worker_greeting(const CampaignRunSetup& setup) {
 }
 
 std::string worker_question(const PlannedRun& run, const std::vector<ScenarioChange>& changes) {
-    WorkerJson values = WorkerJson::array(), changed = WorkerJson::array();
+    JsonData values = JsonData::array(), changed = JsonData::array();
     for (const CampaignValue& value : run.values)
-        values.push_back(WorkerJson::array({value.toml, value.shown}));
+        values.push_back(JsonData::array({value.toml, value.shown}));
     for (const ScenarioChange& change : changes)
-        changed.push_back(WorkerJson::array({change.key, change.value.toml}));
+        changed.push_back(JsonData::array({change.key, change.value.toml}));
     return one_line(
         {{"number", run.number}, {"key", run.key}, {"seed", run.seed}, {"values", values}, {"changes", changed}});
 }
 
 Result<RunResult> worker_answer(std::string_view line, const ResultColumns& columns) {
     try {
-        const WorkerJson answer = WorkerJson::parse(line);
+        const JsonData answer = JsonData::parse(line);
         if (answer.contains("failure")) return fail(ErrorCode::outside, answer.at("failure").get<std::string>());
         std::string row = answer.at("row").get<std::string>();
         if (!row.ends_with('\n')) throw std::runtime_error("a row has no end");
@@ -102,8 +99,8 @@ Result<void> serve_runs(std::istream& questions, std::ostream& answers, const Da
         const auto question = question_from(line);
         if (!question) return fail(question.error());
         const auto result = run_of_campaign(*setup, question->run, question->changes, stop);
-        const WorkerJson answer =
-            result ? WorkerJson{{"row", result_row(*result)}} : WorkerJson{{"failure", result.error().message}};
+        const JsonData answer =
+            result ? JsonData{{"row", result_row(*result)}} : JsonData{{"failure", result.error().message}};
         answers << one_line(answer) << '\n' << std::flush;
     }
     return {};

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/file_descriptor.hpp"
 #include "base/core/result.hpp"
 #include "campaigns/campaign/campaign_plan.hpp"
-#include "base/core/file_descriptor.hpp"
 
 namespace skyloop::inline campaigns {
 

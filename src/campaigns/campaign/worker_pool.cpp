@@ -25,8 +25,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/core/result.hpp"
 #include "base/core/file_descriptor.hpp"
+#include "base/core/result.hpp"
 
 namespace skyloop::inline campaigns {
 

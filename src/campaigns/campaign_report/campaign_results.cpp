@@ -6,9 +6,9 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <unordered_map>
 
+#include "base/core/json.hpp"
 #include "base/core/number_text.hpp"
 #include "detail/shown_names.hpp"
 #include "detail/sqlite_reader.hpp"
@@ -90,7 +90,7 @@ std::string twice(const RowPlaces::Place& place, const CampaignResults& results)
 
 // A JSON list of texts.
 std::optional<std::vector<std::string>> words_of(std::string_view text) {
-    const auto json = nlohmann::json::parse(text, nullptr, false);
+    const auto json = JsonData::parse(text, nullptr, false);
     if (!json.is_array()) return std::nullopt;
     if (!std::all_of(json.begin(), json.end(), [](const auto& word) { return word.is_string(); })) return std::nullopt;
     return json.get<std::vector<std::string>>();

@@ -1,16 +1,14 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
+#include "base/core/json.hpp"
 #include "campaigns/campaign_report/campaign_report.hpp"
 #include "detail/page_parts.hpp"
 #include "detail/shown_names.hpp"
 
 namespace skyloop::inline campaigns {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 template <class T>
 Json json_or_null(const std::optional<T>& value) {
@@ -155,7 +153,7 @@ std::string campaign_report_json(const CampaignResults& results, const CampaignS
     json["failed_runs"] = Json::array();
     for (const std::size_t run : summary.failed_runs)
         json["failed_runs"].push_back(failed_run_json(results, run));
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(json, 1) + "\n";
 }
 
 namespace {

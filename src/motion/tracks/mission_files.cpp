@@ -1,8 +1,8 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
+#include "base/core/json.hpp"
 #include "base/core/words.hpp"
 #include "detail/mission_items.hpp"
 #include "detail/text_track.hpp"
@@ -93,23 +93,21 @@ Result<Track> read_wpl(const TrackFile& file) { return WplReader(file).read(); }
 
 namespace {
 
-using PlanJson = nlohmann::json;
-
-const PlanJson& plan_member(const PlanJson& object, const char* key) {
-    static const PlanJson nothing;
+const JsonData& plan_member(const JsonData& object, const char* key) {
+    static const JsonData nothing;
     if (!object.is_object()) return nothing;
     const auto found = object.find(key);
     return found == object.end() ? nothing : *found;
 }
 
-std::optional<double> plan_number(const PlanJson& value) {
+std::optional<double> plan_number(const JsonData& value) {
     if (!value.is_number()) return std::nullopt;
     const double number = value.get<double>();
     return std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
 // Whole numbers of MAVLink; nothing for others.
-std::optional<int> plan_whole(const PlanJson& value) {
+std::optional<int> plan_whole(const JsonData& value) {
     const auto number = plan_number(value);
     constexpr double most = 65535;
     if (!number || *number != std::floor(*number) || *number < 0 || *number > most) return std::nullopt;
@@ -127,19 +125,19 @@ private:
     [[nodiscard]] tl::unexpected<Error> refusal(const std::string& what) const {
         return fail(ErrorCode::input, fmt::format("{}: {}", file_.name, one_line_of(what)));
     }
-    void take_head(const PlanJson& mission);
-    Result<void> take_item(const PlanJson& item);
-    Result<void> take_simple(const PlanJson& item);
-    Result<void> take_complex(const PlanJson& item);
-    Result<void> take_landing(const PlanJson& item, const std::string& kind);
-    static std::optional<std::array<double, 3>> three(const PlanJson& place);
+    void take_head(const JsonData& mission);
+    Result<void> take_item(const JsonData& item);
+    Result<void> take_simple(const JsonData& item);
+    Result<void> take_complex(const JsonData& item);
+    Result<void> take_landing(const JsonData& item, const std::string& kind);
+    static std::optional<std::array<double, 3>> three(const JsonData& place);
 
     const TrackFile& file_;
     Mission mission_;
     std::size_t number_ = 0;
 };
 
-std::optional<std::array<double, 3>> PlanReader::three(const PlanJson& place) {
+std::optional<std::array<double, 3>> PlanReader::three(const JsonData& place) {
     if (!place.is_array() || place.size() < 3) return std::nullopt;
     std::array<double, 3> numbers{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -150,7 +148,7 @@ std::optional<std::array<double, 3>> PlanReader::three(const PlanJson& place) {
     return numbers;
 }
 
-void PlanReader::take_head(const PlanJson& mission) {
+void PlanReader::take_head(const JsonData& mission) {
     if (const auto home = three(plan_member(mission, "plannedHomePosition")))
         mission_.home = MissionHome{(*home)[0], (*home)[1], (*home)[2]};
     const auto type = plan_whole(plan_member(mission, "vehicleType"));
@@ -173,7 +171,7 @@ void PlanReader::take_head(const PlanJson& mission) {
     if (mission_.vehicle && speed && *speed >= least_mps && *speed <= most_mps) mission_.speed_mps = *speed;
 }
 
-Result<void> PlanReader::take_simple(const PlanJson& item) {
+Result<void> PlanReader::take_simple(const JsonData& item) {
     const auto command = plan_whole(plan_member(item, "command")), frame = plan_whole(plan_member(item, "frame"));
     if (!command || !frame)
         return refusal(
@@ -184,9 +182,9 @@ Result<void> PlanReader::take_simple(const PlanJson& item) {
     taken.number = number_;
     taken.command = *command;
     taken.frame = *frame;
-    const PlanJson &params = plan_member(item, "params"), &place = plan_member(item, "coordinate");
-    for (const PlanJson* numbers : {&params, &place})
-        for (const PlanJson& value : *numbers)
+    const JsonData &params = plan_member(item, "params"), &place = plan_member(item, "coordinate");
+    for (const JsonData* numbers : {&params, &place})
+        for (const JsonData& value : *numbers)
             if (numbers->is_array() && value.is_string())
                 return refusal(fmt::format("item {}: '{}' in its params; expected a number or null", number_,
                                            value.get<std::string>().substr(0, 40)));
@@ -206,8 +204,8 @@ Result<void> PlanReader::take_simple(const PlanJson& item) {
 }
 
 // Where a landing begins and where it ends.
-Result<void> PlanReader::take_landing(const PlanJson& item, const std::string& kind) {
-    const PlanJson& newer = plan_member(item, "landingApproachCoordinate");
+Result<void> PlanReader::take_landing(const JsonData& item, const std::string& kind) {
+    const JsonData& newer = plan_member(item, "landingApproachCoordinate");
     const auto begins = three(newer.is_array() ? newer : plan_member(item, "loiterCoordinate"));
     const auto ends = three(plan_member(item, "landCoordinate"));
     if (!begins || !ends)
@@ -215,7 +213,7 @@ Result<void> PlanReader::take_landing(const PlanJson& item, const std::string& k
             fmt::format("item {}: a {} without its places; expected landingApproachCoordinate and "
                         "landCoordinate",
                         number_, kind));
-    const PlanJson& relative = plan_member(item, "altitudesAreRelative");
+    const JsonData& relative = plan_member(item, "altitudesAreRelative");
     const int frame = relative.is_boolean() && !relative.get<bool>() ? 0 : 3;
     constexpr int waypoint = 16, land = 21;
     for (const auto& [command, place] : {std::pair(waypoint, *begins), std::pair(land, *ends)}) {
@@ -231,23 +229,23 @@ Result<void> PlanReader::take_landing(const PlanJson& item, const std::string& k
 }
 
 // Surveys and corridors hold the items that they were laid out as.
-Result<void> PlanReader::take_complex(const PlanJson& item) {
-    const PlanJson& type = plan_member(item, "complexItemType");
+Result<void> PlanReader::take_complex(const JsonData& item) {
+    const JsonData& type = plan_member(item, "complexItemType");
     const std::string kind = type.is_string() ? type.get<std::string>().substr(0, 40) : "ComplexItem";
     if (kind == "fwLandingPattern" || kind == "vtolLandingPattern") return take_landing(item, kind);
-    const PlanJson& items = plan_member(plan_member(item, "TransectStyleComplexItem"), "Items");
+    const JsonData& items = plan_member(plan_member(item, "TransectStyleComplexItem"), "Items");
     if (!items.is_array()) {
         mission_.notes.push_back(one_line_of(fmt::format("item {} is not followed: a {}", number_, kind)));
         return {};
     }
-    for (const PlanJson& part : items)
+    for (const JsonData& part : items)
         if (const auto taken = take_simple(part); !taken) return taken;
     return {};
 }
 
-Result<void> PlanReader::take_item(const PlanJson& item) {
+Result<void> PlanReader::take_item(const JsonData& item) {
     ++number_;
-    const PlanJson& type = plan_member(item, "type");
+    const JsonData& type = plan_member(item, "type");
     const std::string kind = type.is_string() ? type.get<std::string>() : "";
     if (kind == "SimpleItem" || kind == "missionItem") return take_simple(item);
     if (kind == "ComplexItem") return take_complex(item);
@@ -259,13 +257,13 @@ Result<Track> PlanReader::read() {
     constexpr std::size_t largest = 64 << 20;
     if (file_.text.size() > largest)
         return refusal(fmt::format("a plan of {} bytes; expected at most {}", file_.text.size(), largest));
-    const auto plan = PlanJson::parse(file_.text, nullptr, false);
+    const auto plan = JsonData::parse(file_.text, nullptr, false);
     if (plan.is_discarded()) return refusal("no sound JSON; expected a plan of QGroundControl");
-    const PlanJson &mission = plan_member(plan, "mission"), &items = plan_member(mission, "items");
+    const JsonData &mission = plan_member(plan, "mission"), &items = plan_member(mission, "items");
     if (!items.is_array()) return refusal("a plan without mission.items; expected a mission with its items");
     mission_.format = "QGroundControl plan";
     take_head(mission);
-    for (const PlanJson& item : items)
+    for (const JsonData& item : items)
         if (const auto taken = take_item(item); !taken) return fail(taken.error());
     return track_of_mission(file_, mission_);
 }

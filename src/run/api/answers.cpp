@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/core/json.hpp"
 #include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
 #include "detail/session.hpp"
@@ -171,12 +171,10 @@ Answer<void> Session::tell_path(std::uint32_t receiver, const sky_los& los) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::array<std::string_view, 5> questions{"status", "config", "ports", "faults", "commands"};
 
 // Bytes that are no UTF-8, of file names, become replacement characters.
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string text_of(const Json& json) { return json_text(json); }
 
 bool leads_time(CommandVerb verb) {
     return verb == CommandVerb::pause || verb == CommandVerb::resume || verb == CommandVerb::step ||

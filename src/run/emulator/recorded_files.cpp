@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <set>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "detail/recorded_files.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/run_files.hpp"
@@ -43,7 +43,7 @@ bool holds_recording(const fs::path& folder) {
     std::error_code absent;
     if (!fs::exists(folder / "run.json", absent)) return false;
     const auto text = read_text_file(folder / "run.json");
-    const auto summary = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+    const auto summary = text ? JsonData::parse(*text, nullptr, false) : JsonData();
     return summary.is_object() && summary.contains("program") && summary["program"] == "skyloop";
 }
 

@@ -1,15 +1,12 @@
+#include "base/core/json.hpp"
 #include "run/emulator/assembly.hpp"
 
 #include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
 
 #include "base/time/utc_time.hpp"
 
 namespace skyloop::inline run {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json lateness_json(const LatenessHistogram& lateness) {
     Json bins = Json::array();
@@ -160,7 +157,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
     if (assembly.deadlines) summary["real_time"] = grants_json(*assembly.deadlines);
     summary["warnings"] = assembly.warnings;
     if (emulator.stations().size() > 1) summary["receivers"] = receivers_json(emulator);
-    return summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return json_text(summary, 2) + "\n";
 }
 
 }  // namespace skyloop::inline run

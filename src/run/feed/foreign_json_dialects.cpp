@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/core/json.hpp"
 #include "base/time/utc_time.hpp"
 #include "detail/dialect_parts.hpp"
 #include "detail/motion_filter.hpp"
@@ -22,7 +22,7 @@ namespace skyloop::inline run {
 namespace {
 
 // A finite number; nothing when it is not there or anything else.
-std::optional<double> source_json_number(const nlohmann::json& object, std::string_view key) {
+std::optional<double> source_json_number(const JsonData& object, std::string_view key) {
     const auto found = object.find(key);
     if (found == object.end() || !found->is_number()) return std::nullopt;
     const double value = found->get<double>();
@@ -30,7 +30,7 @@ std::optional<double> source_json_number(const nlohmann::json& object, std::stri
 }
 
 // Three finite numbers.
-std::optional<Eigen::Vector3d> source_json_triple(const nlohmann::json& object, std::string_view key) {
+std::optional<Eigen::Vector3d> source_json_triple(const JsonData& object, std::string_view key) {
     const auto found = object.find(key);
     if (found == object.end() || !found->is_array() || found->size() != 3) return std::nullopt;
     Eigen::Vector3d triple;
@@ -42,7 +42,7 @@ std::optional<Eigen::Vector3d> source_json_triple(const nlohmann::json& object, 
 }
 
 // Empty when it is not there or no text.
-std::string source_json_text(const nlohmann::json& object, std::string_view key) {
+std::string source_json_text(const JsonData& object, std::string_view key) {
     const auto found = object.find(key);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
@@ -53,7 +53,7 @@ public:
 
 private:
     void take(const std::string& line, std::int64_t received_ns, FeedNews& news) override {
-        const auto answer = nlohmann::json::parse(line, nullptr, false);
+        const auto answer = JsonData::parse(line, nullptr, false);
         if (!answer.is_object()) return report_refusal(news, "an answer of the physics that is no JSON object");
         const auto seconds = source_json_number(answer, "timestamp");
         const auto time = seconds ? source_nanoseconds(*seconds) : std::nullopt;
@@ -65,7 +65,7 @@ private:
     }
 
     // Nothing where the answer has no place. One on the Earth needs no origin, and is no matter of maps.
-    [[nodiscard]] std::optional<SampleOr> sample_in(const nlohmann::json& answer) const {
+    [[nodiscard]] std::optional<SampleOr> sample_in(const JsonData& answer) const {
         const auto latitude = source_json_number(answer, "latitude"),
                    longitude = source_json_number(answer, "longitude"),
                    altitude = source_json_number(answer, "altitude");
@@ -86,7 +86,7 @@ private:
     }
 
     template <class Pose>
-    static void put_ardupilot_motion(Pose& pose, const nlohmann::json& answer) {
+    static void put_ardupilot_motion(Pose& pose, const JsonData& answer) {
         pose.velocity_ned = source_json_triple(answer, "velocity");
         pose.attitude = attitude_of(answer);
         if (const auto imu = answer.find("imu"); imu != answer.end() && imu->is_object())
@@ -94,13 +94,13 @@ private:
     }
 
     // Of both the quaternion counts, as for ArduPilot.
-    static std::optional<Attitude> attitude_of(const nlohmann::json& answer) {
+    static std::optional<Attitude> attitude_of(const JsonData& answer) {
         if (const auto turned = attitude_of_four(answer)) return turned;
         const auto angles = source_json_triple(answer, "attitude");
         return angles ? attitude_of_radians(angles->x(), angles->y(), angles->z()) : std::nullopt;
     }
 
-    static std::optional<Attitude> attitude_of_four(const nlohmann::json& answer) {
+    static std::optional<Attitude> attitude_of_four(const JsonData& answer) {
         const auto q = answer.find("quaternion");
         if (q == answer.end() || !q->is_array() || q->size() != 4) return std::nullopt;
         for (const auto& part : *q)
@@ -145,7 +145,7 @@ private:
     struct Device {
         std::string vehicle;
         std::optional<Nanoseconds> time;  // of the epoch
-        nlohmann::json epoch;             // all of its reports, merged
+        JsonData epoch;                   // all of its reports, merged
         std::int64_t epoch_at_ns = 0;     // when the last of them came
         EpochGate gate{has_place | has_height};
         std::optional<Height> height;
@@ -155,7 +155,7 @@ private:
     };
 
     void take(const std::string& line, std::int64_t received_ns, FeedNews& news) override {
-        const auto report = nlohmann::json::parse(line, nullptr, false);
+        const auto report = JsonData::parse(line, nullptr, false);
         if (!report.is_object()) return report_refusal(news, "a line of gpsd that is no JSON object");
         const std::string kind = source_json_text(report, "class");
         if (kind == "WATCH") watches_ = true;
@@ -171,7 +171,7 @@ private:
         take_position(report, device, received_ns, news);
     }
 
-    static void take_attitude(const nlohmann::json& report, Device& device, std::int64_t received_ns) {
+    static void take_attitude(const JsonData& report, Device& device, std::int64_t received_ns) {
         const auto roll = source_json_number(report, "roll"), pitch = source_json_number(report, "pitch");
         const auto yaw = source_json_number(report, "heading");
         device.attitude.reset();
@@ -180,7 +180,7 @@ private:
     }
 
     // Several reports of one epoch may come, the first of them without a height or a velocity (FEEDS.md 3.13).
-    void take_position(const nlohmann::json& report, Device& device, std::int64_t received_ns, FeedNews& news) const {
+    void take_position(const JsonData& report, Device& device, std::int64_t received_ns, FeedNews& news) const {
         constexpr double least_mode = 2;
         const double mode = source_json_number(report, "mode").value_or(0);
         if (mode < least_mode || !source_json_number(report, "lat") || !source_json_number(report, "lon"))
@@ -189,7 +189,7 @@ private:
         if (!time || time != device.time) {
             if (device.gate.next()) tell(device, news);
             device.time = time;
-            device.epoch = nlohmann::json::object();
+            device.epoch = JsonData::object();
         }
         const bool whole = device.gate.take(merge(report, device.epoch));
         device.epoch_at_ns = received_ns;
@@ -199,7 +199,7 @@ private:
     }
 
     // @return the parts that the report has
-    static unsigned merge(const nlohmann::json& report, nlohmann::json& epoch) {
+    static unsigned merge(const JsonData& report, JsonData& epoch) {
         struct Key {
             const char* name;
             unsigned part;
@@ -249,7 +249,7 @@ private:
 
     // gpsd's own separation of the geoid is coarse: the height above the ellipsoid first (FEEDS.md 1.15). A fix in two
     // dimensions keeps the last height.
-    static void take_height(const nlohmann::json& report, Device& device) {
+    static void take_height(const JsonData& report, Device& device) {
         if (const auto ellipsoidal = source_json_number(report, "altHAE"))
             device.height = Height{*ellipsoidal, true};
         else if (const auto sea = source_json_number(report, "altMSL"))
@@ -258,7 +258,7 @@ private:
             device.height = Height{*old_name, false};
     }
 
-    static void put_velocity(const nlohmann::json& report, SourcePose& pose) {
+    static void put_velocity(const JsonData& report, SourcePose& pose) {
         const auto north = source_json_number(report, "velN"), east = source_json_number(report, "velE");
         const auto down = source_json_number(report, "velD");
         if (north && east && down) {
@@ -273,7 +273,7 @@ private:
         pose.velocity_ned = Eigen::Vector3d(*speed * std::cos(course), *speed * std::sin(course), -*climb);
     }
 
-    static std::optional<Nanoseconds> time_of(const nlohmann::json& report) {
+    static std::optional<Nanoseconds> time_of(const JsonData& report) {
         const auto utc = parse_utc(source_json_text(report, "time"));
         if (!utc) return std::nullopt;
         return to_gps_time(*utc, LeapSeconds::announced()).time_since_epoch();

@@ -17,9 +17,7 @@ constexpr std::size_t longest_json_line = 65536;
 constexpr std::size_t most_json_vehicles = 1024, longest_vehicle_name = 64;
 constexpr std::int64_t json_answer_distance_ns = 1'000'000'000;
 
-Bytes json_line(const FeedJson& object) {
-    return to_bytes(object.dump(-1, ' ', false, FeedJson::error_handler_t::replace) + "\n");
-}
+Bytes json_line(const JsonData& object) { return to_bytes(json_text(object) + "\n"); }
 
 class JsonDialect : public FeedDialect {
 public:
@@ -41,7 +39,7 @@ public:
         return {json_line({{"type", "hello"},
                            {"v", 1},
                            {"schema", "skyloop-truth/1"},
-                           {"want", FeedJson::array({"truth"})},
+                           {"want", JsonData::array({"truth"})},
                            {"rate_hz", context_.rate_hz}})};
     }
 
@@ -94,7 +92,7 @@ private:
         news.answers.push_back(json_line({{"type", "error"}, {"line", lines_}, {"what", why}}));
     }
 
-    Result<void> take_statement(const FeedJson& statement, FeedNews& news, std::int64_t received_ns) {
+    Result<void> take_statement(const JsonData& statement, FeedNews& news, std::int64_t received_ns) {
         const auto version = statement_whole(statement, "v");
         if (!version) return fail(version.error());
         if (version->value_or(1) != 1) return fail(ErrorCode::input, fmt::format("'v' is {}; expected 1", **version));
@@ -116,7 +114,7 @@ private:
         return {};  // others are of a later version
     }
 
-    Result<void> take_truth(const FeedJson& statement, FeedNews& news, std::int64_t received_ns) {
+    Result<void> take_truth(const JsonData& statement, FeedNews& news, std::int64_t received_ns) {
         auto sample = statement_sample(statement, origin_, context_);
         if (!sample) return fail(sample.error());
         if (const auto why = implausible(*sample)) return fail(ErrorCode::input, "cannot be: " + *why);
@@ -151,8 +149,8 @@ private:
         return static_cast<std::uint64_t>(*now - *before - 1);
     }
 
-    static Result<std::string> vehicle_of(const FeedJson& statement) {
-        const FeedJson* id = statement_member(statement, "id");
+    static Result<std::string> vehicle_of(const JsonData& statement) {
+        const JsonData* id = statement_member(statement, "id");
         if (id != nullptr && id->is_number_integer()) return id->dump();
         const auto text = statement_text(statement, "id");
         if (!text) return fail(text.error());
@@ -162,15 +160,15 @@ private:
         return name;
     }
 
-    Result<void> take_origin(const FeedJson& statement) {
+    Result<void> take_origin(const JsonData& statement) {
         const auto place = statement_place(statement, context_);
         if (!place) return fail(place.error());
         origin_ = *place;
         return {};
     }
 
-    Result<void> take_clock(const FeedJson& statement, FeedNews& news) {
-        const FeedJson* paused = statement_member(statement, "paused");
+    Result<void> take_clock(const JsonData& statement, FeedNews& news) {
+        const JsonData* paused = statement_member(statement, "paused");
         if (paused == nullptr) return {};
         if (!paused->is_boolean()) return fail(ErrorCode::input, "'paused' is neither true nor false");
         paused_ = paused->get<bool>();
@@ -193,7 +191,7 @@ private:
             end_pause(news);
     }
 
-    Result<void> take_event(const FeedJson& statement, FeedNews& news) {
+    Result<void> take_event(const JsonData& statement, FeedNews& news) {
         auto command = statement_event(statement);
         if (!command) return fail(command.error());
         const auto time = statement_time(statement);
@@ -204,7 +202,7 @@ private:
         return {};
     }
 
-    static Result<void> take_step(const FeedJson& statement, FeedNews& news) {
+    static Result<void> take_step(const JsonData& statement, FeedNews& news) {
         const auto until = statement_time(statement);
         if (!until) return fail(until.error());
         if (!*until) return fail(ErrorCode::input, "the step has no 't'; expected the time until which the run may go");

@@ -20,17 +20,17 @@ constexpr double longest_source_s = 4e9;
 tl::unexpected<Error> statement_mistake(std::string sentence) { return fail(ErrorCode::input, std::move(sentence)); }
 
 // A value as it stands there, short and on one line.
-std::string shown_json(const FeedJson& value) {
+std::string shown_json(const JsonData& value) {
     constexpr std::size_t longest = 40;
-    std::string text = value.dump(-1, ' ', true, FeedJson::error_handler_t::replace);
+    std::string text = value.dump(-1, ' ', true, JsonData::error_handler_t::replace);
     if (text.size() > longest) text = text.substr(0, longest) + "…";
     return text;
 }
 
 // A list of numbers; nothing when it is absent.
 template <int Count>
-Result<std::optional<Eigen::Matrix<double, Count, 1>>> numbers_of(const FeedJson& statement, const char* key) {
-    const FeedJson* value = statement_member(statement, key);
+Result<std::optional<Eigen::Matrix<double, Count, 1>>> numbers_of(const JsonData& statement, const char* key) {
+    const JsonData* value = statement_member(statement, key);
     if (value == nullptr) return std::nullopt;
     Eigen::Matrix<double, Count, 1> numbers;
     bool good = value->is_array() && value->size() == Count;
@@ -44,7 +44,7 @@ Result<std::optional<Eigen::Matrix<double, Count, 1>>> numbers_of(const FeedJson
 }
 
 // Which one of several keys stands there; null: none.
-Result<const char*> only_one_of(const FeedJson& statement, std::initializer_list<const char*> keys) {
+Result<const char*> only_one_of(const JsonData& statement, std::initializer_list<const char*> keys) {
     const char* found = nullptr;
     for (const char* key : keys) {
         if (statement_member(statement, key) == nullptr) continue;
@@ -66,7 +66,7 @@ Eigen::Quaterniond ned_to_ned(const LocalFrame& from, const LocalFrame& to) {
     return Eigen::Quaterniond(turn);
 }
 
-Result<std::optional<Eigen::Quaterniond>> unit_quaternion(const FeedJson& statement, const char* key) {
+Result<std::optional<Eigen::Quaterniond>> unit_quaternion(const JsonData& statement, const char* key) {
     constexpr double most_off = 0.05;  // FEEDS.md 3.1
     const auto q = numbers_of<4>(statement, key);
     if (!q) return fail(q.error());
@@ -77,7 +77,7 @@ Result<std::optional<Eigen::Quaterniond>> unit_quaternion(const FeedJson& statem
 }
 
 // Body (forward, right, down) to north, east, down of the frame that the source counts in.
-Result<std::optional<Eigen::Quaterniond>> attitude_of(const FeedJson& statement) {
+Result<std::optional<Eigen::Quaterniond>> attitude_of(const JsonData& statement) {
     const auto key = only_one_of(statement, {"q", "q_flu_enu", "rpy_deg"});
     if (!key) return fail(key.error());
     if (*key == nullptr) return std::nullopt;
@@ -102,7 +102,7 @@ struct StatementPlace {
     LocalFrame frame;
 };
 
-Result<StatementPlace> position_of(const FeedJson& statement, const std::optional<Geodetic>& origin,
+Result<StatementPlace> position_of(const JsonData& statement, const std::optional<Geodetic>& origin,
                                    const FeedContext& context) {
     const auto key = only_one_of(statement, {"lla", "ecef", "ned", "enu"});
     if (!key) return fail(key.error());
@@ -130,7 +130,7 @@ Result<StatementPlace> position_of(const FeedJson& statement, const std::optiona
     return StatementPlace{frame.to_ecef(Position<Enu>(ned ? enu_of_ned(**metres) : Eigen::Vector3d(**metres))), frame};
 }
 
-Result<std::optional<Velocity<Ecef>>> velocity_of(const FeedJson& statement, const LocalFrame& frame,
+Result<std::optional<Velocity<Ecef>>> velocity_of(const JsonData& statement, const LocalFrame& frame,
                                                   const std::optional<Eigen::Quaterniond>& attitude) {
     const auto key = only_one_of(statement, {"vel_ned", "vel_enu", "vel_ecef", "vel_frd"});
     if (!key) return fail(key.error());
@@ -146,14 +146,14 @@ Result<std::optional<Velocity<Ecef>>> velocity_of(const FeedJson& statement, con
     return frame.to_ecef(Velocity<Enu>(enu_of_ned(*attitude * velocity)));
 }
 
-std::optional<ParameterValue> parameter_of(const FeedJson& value) {
+std::optional<ParameterValue> parameter_of(const JsonData& value) {
     if (value.is_number()) return value.get<double>();
     if (value.is_boolean()) return value.get<bool>();
     if (value.is_string()) return value.get<std::string>();
     if (!value.is_array()) return std::nullopt;
-    if (std::all_of(value.begin(), value.end(), [](const FeedJson& v) { return v.is_number(); }))
+    if (std::all_of(value.begin(), value.end(), [](const JsonData& v) { return v.is_number(); }))
         return value.get<std::vector<double>>();
-    if (std::all_of(value.begin(), value.end(), [](const FeedJson& v) { return v.is_string(); }))
+    if (std::all_of(value.begin(), value.end(), [](const JsonData& v) { return v.is_string(); }))
         return value.get<std::vector<std::string>>();
     return std::nullopt;
 }
@@ -166,35 +166,35 @@ bool is_one_line(const std::string& text) {
 
 }  // namespace
 
-Result<FeedJson> read_statement(std::string_view line) {
+Result<JsonData> read_statement(std::string_view line) {
     constexpr int deepest = 16;
     bool deep = false;
-    const auto look = [&](int depth, FeedJson::parse_event_t, FeedJson&) {
+    const auto look = [&](int depth, JsonData::parse_event_t, JsonData&) {
         deep = deep || depth > deepest;
         return !deep;
     };
-    FeedJson statement = FeedJson::parse(line.begin(), line.end(), look, false);
+    JsonData statement = JsonData::parse(line.begin(), line.end(), look, false);
     if (deep) return statement_mistake(fmt::format("is nested deeper than {}", deepest));
     if (statement.is_discarded()) return statement_mistake("is no JSON; expected one object on one line");
     if (!statement.is_object()) return statement_mistake("is no JSON object");
     return statement;
 }
 
-const FeedJson* statement_member(const FeedJson& statement, const char* key) {
+const JsonData* statement_member(const JsonData& statement, const char* key) {
     const auto found = statement.find(key);
     return found == statement.end() || found->is_null() ? nullptr : &*found;
 }
 
-Result<std::optional<std::string>> statement_text(const FeedJson& statement, const char* key) {
-    const FeedJson* value = statement_member(statement, key);
+Result<std::optional<std::string>> statement_text(const JsonData& statement, const char* key) {
+    const JsonData* value = statement_member(statement, key);
     if (value == nullptr) return std::nullopt;
     if (!value->is_string() || !is_one_line(value->get_ref<const std::string&>()))
         return statement_mistake(fmt::format("'{}' is {}; expected a text", key, shown_json(*value)));
     return value->get<std::string>();
 }
 
-Result<std::optional<std::int64_t>> statement_whole(const FeedJson& statement, const char* key) {
-    const FeedJson* value = statement_member(statement, key);
+Result<std::optional<std::int64_t>> statement_whole(const JsonData& statement, const char* key) {
+    const JsonData* value = statement_member(statement, key);
     if (value == nullptr) return std::nullopt;
     if (value->is_number_unsigned() && value->get<std::uint64_t>() <= static_cast<std::uint64_t>(INT64_MAX))
         return static_cast<std::int64_t>(value->get<std::uint64_t>());
@@ -206,7 +206,7 @@ Result<std::optional<std::int64_t>> statement_whole(const FeedJson& statement, c
     return statement_mistake(fmt::format("'{}' is {}; expected a whole number", key, shown_json(*value)));
 }
 
-Result<std::optional<Nanoseconds>> statement_time(const FeedJson& statement) {
+Result<std::optional<Nanoseconds>> statement_time(const JsonData& statement) {
     const auto key = only_one_of(statement, {"t", "t_ns"});
     if (!key) return fail(key.error());
     if (*key == nullptr) return std::nullopt;
@@ -218,7 +218,7 @@ Result<std::optional<Nanoseconds>> statement_time(const FeedJson& statement) {
             return statement_mistake(fmt::format("'t_ns' is {}; expected at most ±4e18", **whole));
         return Nanoseconds(**whole);
     }
-    const FeedJson& value = *statement_member(statement, "t");
+    const JsonData& value = *statement_member(statement, "t");
     double seconds = std::nan("");
     if (value.is_number()) seconds = value.get<double>();
     if (value.is_string()) {
@@ -230,7 +230,7 @@ Result<std::optional<Nanoseconds>> statement_time(const FeedJson& statement) {
     return to_nanoseconds(Seconds(seconds));
 }
 
-Result<Geodetic> statement_place(const FeedJson& statement, const FeedContext& context) {
+Result<Geodetic> statement_place(const JsonData& statement, const FeedContext& context) {
     const auto lla = numbers_of<3>(statement, "lla");
     if (!lla) return fail(lla.error());
     if (!*lla) return statement_mistake("has no 'lla'; expected [latitude, longitude, height]");
@@ -248,7 +248,7 @@ Result<Geodetic> statement_place(const FeedJson& statement, const FeedContext& c
     return *place;
 }
 
-Result<TruthSample> statement_sample(const FeedJson& statement, const std::optional<Geodetic>& origin,
+Result<TruthSample> statement_sample(const JsonData& statement, const std::optional<Geodetic>& origin,
                                      const FeedContext& context) {
     const auto place = position_of(statement, origin, context);
     if (!place) return fail(place.error());
@@ -271,12 +271,12 @@ Result<TruthSample> statement_sample(const FeedJson& statement, const std::optio
     return sample;
 }
 
-Result<Command> statement_event(const FeedJson& statement) {
+Result<Command> statement_event(const JsonData& statement) {
     const auto name = statement_text(statement, "name");
     if (!name) return fail(name.error());
     if (!*name) return statement_mistake("the event has no 'name'; expected a command or a kind of fault");
     ParameterMap members;
-    const FeedJson* arguments = statement_member(statement, "args");
+    const JsonData* arguments = statement_member(statement, "args");
     if (arguments != nullptr && !arguments->is_object())
         return statement_mistake(fmt::format("'args' is {}; expected an object", shown_json(*arguments)));
     if (arguments != nullptr)

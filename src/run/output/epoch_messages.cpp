@@ -1,12 +1,11 @@
 #include "run/output/epoch_messages.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "base/core/json.hpp"
 #include "base/geo/local_frame.hpp"
 #include "base/time/utc_time.hpp"
 #include "firmware/messages/field_values.hpp"
@@ -14,8 +13,6 @@
 
 namespace skyloop::inline run {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A tenth of a millimetre of place and way, and what is finer than any receiver's own of the rest: more digits would
 // only make the lines longer.
@@ -173,7 +170,7 @@ std::string epoch_line(const EpochRecord& record) {
     for (const SatelliteSeen& satellite : record.satellites)
         satellites.push_back(satellite_line(satellite));
     json["satellites"] = std::move(satellites);
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return json_text(json) + "\n";
 }
 
 namespace {

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <chrono>
 #include <cmath>
 
+#include "base/core/json.hpp"
 #include "base/core/number_text.hpp"
 #include "base/core/process.hpp"
 #include "base/core/words.hpp"
@@ -16,7 +16,6 @@
 namespace skyloop::inline run {
 namespace {
 
-using JsonValue = nlohmann::json;
 using ConditionValue = std::variant<double, bool, std::string>;
 
 struct Operator {
@@ -76,8 +75,8 @@ std::optional<ConditionValue> parse_condition_value(std::string_view text) {
 }
 
 // The value at the path from `first` on, or null.
-const JsonValue* value_at(const JsonValue& object, const std::vector<std::string>& path, std::size_t first) {
-    const JsonValue* value = &object;
+const JsonData* value_at(const JsonData& object, const std::vector<std::string>& path, std::size_t first) {
+    const JsonData* value = &object;
     for (std::size_t i = first; i < path.size(); ++i) {
         if (value->is_array()) {
             const auto index = number_in<std::size_t>(path[i]);
@@ -93,7 +92,7 @@ const JsonValue* value_at(const JsonValue& object, const std::vector<std::string
 }
 
 // Values of different kinds are unequal, and nothing else.
-bool value_fulfils(const JsonCondition& condition, const JsonValue& value) {
+bool value_fulfils(const JsonCondition& condition, const JsonData& value) {
     if (const auto* number = std::get_if<double>(&condition.value); number != nullptr && value.is_number())
         return compares(value.get<double>(), condition.comparison, *number);
     if (const auto* text = std::get_if<std::string>(&condition.value); text != nullptr && value.is_string())
@@ -103,7 +102,7 @@ bool value_fulfils(const JsonCondition& condition, const JsonValue& value) {
     return condition.comparison == Relation::not_equal;
 }
 
-bool names_class(const JsonValue& object, const std::string& part) {
+bool names_class(const JsonData& object, const std::string& part) {
     const auto found = object.find("class");
     return found != object.end() && found->is_string() &&
            lower_case(found->get_ref<const std::string&>()) == lower_case(part);
@@ -163,11 +162,11 @@ std::string condition_text(const JsonCondition& condition) {
 
 bool fulfils(const JsonCondition& condition, std::string_view line) {
     if (line.empty() || line.size() > (std::size_t{1} << 16)) return false;
-    const JsonValue object = JsonValue::parse(line, nullptr, false);
+    const JsonData object = JsonData::parse(line, nullptr, false);
     if (!object.is_object()) return false;
-    if (const JsonValue* value = value_at(object, condition.path, 0)) return value_fulfils(condition, *value);
+    if (const JsonData* value = value_at(object, condition.path, 0)) return value_fulfils(condition, *value);
     if (condition.path.size() < 2 || !names_class(object, condition.path.front())) return false;
-    const JsonValue* value = value_at(object, condition.path, 1);
+    const JsonData* value = value_at(object, condition.path, 1);
     return value != nullptr && value_fulfils(condition, *value);
 }
 

@@ -4,10 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "base/core/json.hpp"
 #include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
 
@@ -81,12 +81,12 @@ void add_case(pugi::xml_node suite, const Verdict& verdict, const ReportedRun& r
     result.text().set(xml_text(text).c_str());
 }
 
-nlohmann::ordered_json verdict_object(const Verdict& verdict) {
-    nlohmann::ordered_json object{{"name", verdict.name},
-                                  {"expected", verdict.expected},
-                                  {"outcome", outcome_name(verdict.outcome)},
-                                  {"evidence", verdict.evidence},
-                                  {"run_time_s", verdict.run_time.value()}};
+Json verdict_object(const Verdict& verdict) {
+    Json object{{"name", verdict.name},
+                {"expected", verdict.expected},
+                {"outcome", outcome_name(verdict.outcome)},
+                {"evidence", verdict.evidence},
+                {"run_time_s", verdict.run_time.value()}};
     if (verdict.decided_at) {
         object["decided_at_utc"] = utc_text(*verdict.decided_at);
         object["decided_at_gps_ns"] = verdict.decided_at->time_since_epoch().count();
@@ -112,18 +112,15 @@ std::string verdict_text(std::span<const Verdict> verdicts, const ReportedRun& r
 }
 
 std::string verdict_json(std::span<const Verdict> verdicts, const ReportedRun& run) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    Json list = Json::array();
     for (const Verdict& verdict : verdicts)
         list.push_back(verdict_object(verdict));
     const std::optional<bool> met = all_met(verdicts);
-    const nlohmann::ordered_json report{{"scenario", run.scenario},
-                                        {"seed", run.seed},
-                                        {"start_utc", utc_text(run.start)},
-                                        {"length_s", run.length.value()},
-                                        {"met", met ? nlohmann::ordered_json(*met) : nlohmann::ordered_json()},
-                                        {"evidence", run.evidence},
-                                        {"verdicts", std::move(list)}};
-    return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    const Json report{{"scenario", run.scenario},         {"seed", run.seed},
+                      {"start_utc", utc_text(run.start)}, {"length_s", run.length.value()},
+                      {"met", met ? Json(*met) : Json()}, {"evidence", run.evidence},
+                      {"verdicts", std::move(list)}};
+    return json_text(report, 2) + "\n";
 }
 
 std::string junit_xml(std::span<const Verdict> verdicts, const ReportedRun& run) {

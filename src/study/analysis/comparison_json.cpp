@@ -1,13 +1,11 @@
 #include <array>
-#include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "base/time/utc_time.hpp"
 #include "study/analysis/comparison.hpp"
 
 namespace skyloop::inline study {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 template <class Value>
 Json json_or_null(const std::optional<Value>& value) {
@@ -142,7 +140,7 @@ std::string comparison_json(const Comparison& comparison) {
     }
     json["warnings"] = comparison.warnings;
     // File names need not be UTF-8; what is not is shown as a replacement character instead of throwing.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(json, 2) + "\n";
 }
 
 }  // namespace skyloop::inline study

@@ -1,12 +1,12 @@
 #include "study/analysis/sky_listing.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
+#include "base/core/json.hpp"
 #include "base/time/utc_time.hpp"
 #include "world/gnss/constants.hpp"
 
@@ -68,22 +68,22 @@ FirstPathCells first_path_cells(const SkyRow& row, int decimals) {
     return cells;
 }
 
-nlohmann::ordered_json place_json(const Geodetic& place) {
+Json place_json(const Geodetic& place) {
     return {{"lat_deg", place.latitude.deg()},
             {"lon_deg", place.longitude.deg()},
             {"height_m", place.height.above_ellipsoid.value()}};
 }
 
-nlohmann::ordered_json path_json(const ReflectedPath& path) {
-    nlohmann::ordered_json json{{"reflections", path.surfaces.size()},
-                                {"excess_m", path.excess.value()},
-                                {"excess_rate_mps", path.excess_rate.value()},
-                                {"loss_db", path.loss.value()},
-                                {"arrival_azimuth_deg", path.arrival.azimuth.deg()},
-                                {"arrival_elevation_deg", path.arrival.elevation.deg()}};
-    json["points"] = nlohmann::ordered_json::array();
+Json path_json(const ReflectedPath& path) {
+    Json json{{"reflections", path.surfaces.size()},
+              {"excess_m", path.excess.value()},
+              {"excess_rate_mps", path.excess_rate.value()},
+              {"loss_db", path.loss.value()},
+              {"arrival_azimuth_deg", path.arrival.azimuth.deg()},
+              {"arrival_elevation_deg", path.arrival.elevation.deg()}};
+    json["points"] = Json::array();
     for (std::size_t i = 0; i < path.points.size(); ++i) {
-        nlohmann::ordered_json point{{"surface", surface_kind_names[static_cast<std::size_t>(path.surfaces[i])]}};
+        Json point{{"surface", surface_kind_names[static_cast<std::size_t>(path.surfaces[i])]}};
         point.update(place_json(path.places[i]));
         const Eigen::Vector3d& p = path.points[i];
         point.update({{"east_m", p.x()}, {"north_m", p.y()}, {"up_m", p.z()}});
@@ -92,10 +92,10 @@ nlohmann::ordered_json path_json(const ReflectedPath& path) {
     return json;
 }
 
-void add_scene_json(nlohmann::ordered_json& json, const SceneReception& scene) {
+void add_scene_json(Json& json, const SceneReception& scene) {
     json["reception"] = reception_names[static_cast<std::size_t>(scene.reception())];
     json["line_of_sight"] = scene.line_of_sight;
-    json["paths"] = nlohmann::ordered_json::array();
+    json["paths"] = Json::array();
     for (const ReflectedPath& path : scene.paths)
         json["paths"].push_back(path_json(path));
 }
@@ -129,15 +129,15 @@ std::string sky_text_heading(const SkyListing& listing, bool with_scene) {
     return text + (with_scene ? fmt::format("{:>62}\n", "m") : "\n");
 }
 
-nlohmann::ordered_json satellite_json(const SkyRow& row) {
+Json satellite_json(const SkyRow& row) {
     const SatelliteInView& s = row.view;
     const WeekAndTow toe = week_and_tow(s.toe);
-    nlohmann::ordered_json json{{"satellite", to_string(s.id)},   {"system", constellation_name(s.id.constellation)},
-                                {"azimuth_deg", s.azimuth.deg()}, {"elevation_deg", s.elevation.deg()},
-                                {"range_m", s.range.value()},     {"range_rate_mps", s.range_rate.value()}};
+    Json json{{"satellite", to_string(s.id)},   {"system", constellation_name(s.id.constellation)},
+              {"azimuth_deg", s.azimuth.deg()}, {"elevation_deg", s.elevation.deg()},
+              {"range_m", s.range.value()},     {"range_rate_mps", s.range_rate.value()}};
     const std::optional<Hertz> doppler = first_doppler(s);
-    json["doppler_hz"] = doppler ? nlohmann::ordered_json(doppler->value()) : nlohmann::ordered_json(nullptr);
-    json["cn0_dbhz"] = row.cn0 ? nlohmann::ordered_json(row.cn0->value()) : nlohmann::ordered_json(nullptr);
+    json["doppler_hz"] = doppler ? Json(doppler->value()) : Json(nullptr);
+    json["cn0_dbhz"] = row.cn0 ? Json(row.cn0->value()) : Json(nullptr);
     json["healthy"] = s.healthy;
     json["used"] = row.used;
     json["toe"] = {{"gps_week", toe.week}, {"tow_s", toe.tow_seconds()}};
@@ -194,11 +194,10 @@ std::string sky_text(const SkyListing& listing) {
 
 std::string sky_json(const SkyListing& listing) {
     const WeekAndTow gps = week_and_tow(listing.time);
-    nlohmann::ordered_json json{
-        {"time_utc", time_text(listing.time, 3)}, {"gps_week", gps.week}, {"tow_s", gps.tow_seconds()}};
+    Json json{{"time_utc", time_text(listing.time, 3)}, {"gps_week", gps.week}, {"tow_s", gps.tow_seconds()}};
     json["position"] = place_json(listing.place);
     json["mask_deg"] = listing.mask.deg();
-    json["satellites"] = nlohmann::ordered_json::array();
+    json["satellites"] = Json::array();
     for (const SkyRow& row : listing.rows)
         json["satellites"].push_back(satellite_json(row));
     json["visible"] = listing.rows.size();

@@ -12,32 +12,30 @@ namespace skyloop::inline world {
 
 namespace {
 
-using nlohmann::json;
-
 /// Reads CityJSON 1.0, 1.1 and 2.0 (cityjson.org/specs).
 class CityJsonReader {
 public:
-    CityJsonReader(const json& root, std::string_view name) : root_(root), name_(name) {}
+    CityJsonReader(const JsonData& root, std::string_view name) : root_(root), name_(name) {}
 
     Result<CityObjects> read();
 
 private:
     [[nodiscard]] std::string read_vertices();
-    void read_object(CityObject& object, const json& value);
-    void read_geometry(CityObject& object, const json& geometry);
-    void read_shell(std::vector<ObjectSurface>& surfaces, const json& shell, const json& values);
-    [[nodiscard]] bool read_surface(ObjectSurface& surface, const json& rings) const;
+    void read_object(CityObject& object, const JsonData& value);
+    void read_geometry(CityObject& object, const JsonData& geometry);
+    void read_shell(std::vector<ObjectSurface>& surfaces, const JsonData& shell, const JsonData& values);
+    [[nodiscard]] bool read_surface(ObjectSurface& surface, const JsonData& rings) const;
     void link_parts(const std::unordered_map<std::string, std::size_t>& numbers);
 
-    const json& root_;
+    const JsonData& root_;
     std::string_view name_;
     std::vector<Eigen::Vector3d> vertices_;
-    const json* semantics_ = nullptr;  ///< of the geometry being read
+    const JsonData* semantics_ = nullptr;  ///< of the geometry being read
     std::size_t templates_ = 0;
     CityObjects found_;
 };
 
-bool number_triple(const json& value, Eigen::Vector3d& out) {
+bool number_triple(const JsonData& value, Eigen::Vector3d& out) {
     if (!value.is_array() || value.size() != 3) return false;
     for (std::size_t i = 0; i < 3; ++i) {
         if (!value[i].is_number()) return false;
@@ -48,14 +46,14 @@ bool number_triple(const json& value, Eigen::Vector3d& out) {
 
 std::string CityJsonReader::read_vertices() {
     Eigen::Vector3d scale = Eigen::Vector3d::Ones(), shift = Eigen::Vector3d::Zero();
-    const json& transform = member(root_, "transform");
+    const JsonData& transform = member(root_, "transform");
     if (!transform.is_null() &&
         !(number_triple(member(transform, "scale"), scale) && number_triple(member(transform, "translate"), shift)))
         return "\"transform\" has no scale and translate of three numbers each";
-    const json& vertices = member(root_, "vertices");
+    const JsonData& vertices = member(root_, "vertices");
     if (!vertices.is_array()) return "\"vertices\" is missing or no list";
     vertices_.reserve(vertices.size());
-    for (const json& vertex : vertices) {
+    for (const JsonData& vertex : vertices) {
         Eigen::Vector3d place;
         if (!number_triple(vertex, place)) return fmt::format("vertex {} is not of three numbers", vertices_.size());
         vertices_.push_back(place.cwiseProduct(scale) + shift);
@@ -64,19 +62,19 @@ std::string CityJsonReader::read_vertices() {
 }
 
 /// "2.2" or 2.2 is 22; −1 for what is no level.
-int level_of_detail(const json& value) {
+int level_of_detail(const JsonData& value) {
     double level = -1;
     if (value.is_number()) level = value.get<double>();
     if (value.is_string()) level = std::strtod(value.get_ref<const std::string&>().c_str(), nullptr);
     return level >= 0 && level < 10 ? static_cast<int>(std::lround(level * 10)) : -1;
 }
 
-bool CityJsonReader::read_surface(ObjectSurface& surface, const json& rings) const {
+bool CityJsonReader::read_surface(ObjectSurface& surface, const JsonData& rings) const {
     if (!rings.is_array()) return false;
-    for (const json& indices : rings) {
+    for (const JsonData& indices : rings) {
         if (!indices.is_array()) return false;
         auto& ring = surface.rings.emplace_back();
-        for (const json& index : indices) {
+        for (const JsonData& index : indices) {
             if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= vertices_.size()) return false;
             ring.push_back(vertices_[index.get<std::size_t>()]);
         }
@@ -84,12 +82,12 @@ bool CityJsonReader::read_surface(ObjectSurface& surface, const json& rings) con
     return !surface.rings.empty() && surface.rings.front().size() >= 3;
 }
 
-void CityJsonReader::read_shell(std::vector<ObjectSurface>& surfaces, const json& shell, const json& values) {
+void CityJsonReader::read_shell(std::vector<ObjectSurface>& surfaces, const JsonData& shell, const JsonData& values) {
     if (!shell.is_array()) {
         ++found_.dropped;
         return;
     }
-    const json& kinds = member(*semantics_, "surfaces");
+    const JsonData& kinds = member(*semantics_, "surfaces");
     for (std::size_t i = 0; i < shell.size(); ++i) {
         ObjectSurface surface;
         if (!read_surface(surface, shell[i])) {
@@ -105,8 +103,8 @@ void CityJsonReader::read_shell(std::vector<ObjectSurface>& surfaces, const json
     }
 }
 
-const json& element(const json& list, std::size_t index) {
-    static const json nothing;
+const JsonData& element(const JsonData& list, std::size_t index) {
+    static const JsonData nothing;
     return list.is_array() && index < list.size() ? list[index] : nothing;
 }
 
@@ -118,16 +116,16 @@ void judge_untold(std::vector<ObjectSurface>& surfaces) {
         if (untold(surface)) surface.use = SurfaceUse::by_slope;
 }
 
-void CityJsonReader::read_geometry(CityObject& object, const json& geometry) {
+void CityJsonReader::read_geometry(CityObject& object, const JsonData& geometry) {
     const std::string_view type = text_member(geometry, "type");
     const int level = level_of_detail(member(geometry, "lod"));
     if (type == "GeometryInstance") {
         ++templates_;
         return;
     }
-    const json& boundaries = member(geometry, "boundaries");
+    const JsonData& boundaries = member(geometry, "boundaries");
     semantics_ = &member(geometry, "semantics");
-    const json& values = member(*semantics_, "values");
+    const JsonData& values = member(*semantics_, "values");
     std::vector<ObjectSurface> surfaces;
     if (type == "MultiSurface" || type == "CompositeSurface") {
         read_shell(surfaces, boundaries, values);
@@ -145,21 +143,21 @@ void CityJsonReader::read_geometry(CityObject& object, const json& geometry) {
     of_level.insert(of_level.end(), std::make_move_iterator(surfaces.begin()), std::make_move_iterator(surfaces.end()));
 }
 
-void CityJsonReader::read_object(CityObject& object, const json& value) {
+void CityJsonReader::read_object(CityObject& object, const JsonData& value) {
     std::string_view type = text_member(value, "type");
     if (type.starts_with('+')) type.remove_prefix(1);
     object.object_class = object_class(type);
     object.building = type == "Building" || type == "BuildingPart";
-    const json& geometries = member(value, "geometry");
+    const JsonData& geometries = member(value, "geometry");
     if (!geometries.is_array() || object.object_class == ObjectClass::ignored) return;
-    for (const json& geometry : geometries)
+    for (const JsonData& geometry : geometries)
         read_geometry(object, geometry);
 }
 
 void CityJsonReader::link_parts(const std::unordered_map<std::string, std::size_t>& numbers) {
     for (const auto& [id, value] : member(root_, "CityObjects").items()) {
         if (!text_member(value, "type").ends_with("Part")) continue;
-        const json& parent = element(member(value, "parents"), 0);
+        const JsonData& parent = element(member(value, "parents"), 0);
         if (!parent.is_string()) continue;
         const auto found = numbers.find(parent.get<std::string>());
         if (found != numbers.end()) found_.objects[numbers.at(id)].parent = found->second;
@@ -167,8 +165,8 @@ void CityJsonReader::link_parts(const std::unordered_map<std::string, std::size_
 }
 
 /// Of its metadata. Maps have the easting first whatever the registry says, as cjio writes them.
-std::optional<ReferenceSystem> system_told(const json& metadata, const CityFileSettings& settings) {
-    const json& epsg = member(member(metadata, "crs"), "epsg");
+std::optional<ReferenceSystem> system_told(const JsonData& metadata, const CityFileSettings& settings) {
+    const JsonData& epsg = member(member(metadata, "crs"), "epsg");
     auto system = epsg.is_number_unsigned()
                       ? reference_system_of_file(fmt::format("EPSG:{}", epsg.get<std::uint64_t>()), settings)
                       : reference_system_of_file(text_member(metadata, "referenceSystem"), settings);
@@ -179,7 +177,7 @@ std::optional<ReferenceSystem> system_told(const json& metadata, const CityFileS
 Result<CityObjects> CityJsonReader::read() {
     if (const std::string problem = read_vertices(); !problem.empty())
         return fail(ErrorCode::input, fmt::format("{}: {}", name_, problem));
-    const json& objects = member(root_, "CityObjects");
+    const JsonData& objects = member(root_, "CityObjects");
     if (!objects.is_object())
         return fail(ErrorCode::input, fmt::format("{}: \"CityObjects\" is missing or no object", name_));
     std::unordered_map<std::string, std::size_t> numbers;
@@ -206,7 +204,7 @@ private:
 
     std::string_view text_, name_;
     const CityFileSettings& settings_;
-    json transform_;
+    JsonData transform_;
     bool begun_ = false;
     CityObjects found_;
 };

@@ -13,20 +13,18 @@ namespace skyloop::inline world {
 
 namespace {
 
-using nlohmann::json;
-
 /// Reads GeoJSON (RFC 7946, and the "crs" member of the 2008 format).
 class GeoJsonReader {
 public:
     GeoJsonReader(const CityFileSettings& settings, std::string_view name) : settings_(settings), name_(name) {}
 
-    Result<Outlines> read(const json& root);
+    Result<Outlines> read(const JsonData& root);
 
 private:
-    void read_feature(const json& feature);
-    void read_geometry(const json& geometry, const OutlineUse& use);
-    void read_polygon(const json& rings, const OutlineUse& use);
-    [[nodiscard]] ReferenceSystem find_system(const json& root) const;
+    void read_feature(const JsonData& feature);
+    void read_geometry(const JsonData& geometry, const OutlineUse& use);
+    void read_polygon(const JsonData& rings, const OutlineUse& use);
+    [[nodiscard]] ReferenceSystem find_system(const JsonData& root) const;
 
     const CityFileSettings& settings_;
     std::string_view name_;
@@ -35,9 +33,9 @@ private:
     std::size_t other_shapes_ = 0, other_uses_ = 0;
 };
 
-bool read_positions(const json& positions, std::vector<Eigen::Vector2d>& ring) {
+bool read_positions(const JsonData& positions, std::vector<Eigen::Vector2d>& ring) {
     if (!positions.is_array()) return false;
-    for (const json& position : positions) {
+    for (const JsonData& position : positions) {
         if (!position.is_array() || position.size() < 2 || !position[0].is_number() || !position[1].is_number())
             return false;
         ring.emplace_back(position[0].get<double>(), position[1].get<double>());
@@ -46,7 +44,7 @@ bool read_positions(const json& positions, std::vector<Eigen::Vector2d>& ring) {
 }
 
 /// Texts and numbers, by keys in small letters. An empty text is a column of a table without a value.
-OutlineTags tags_of(const json& properties) {
+OutlineTags tags_of(const JsonData& properties) {
     OutlineTags tags;
     if (!properties.is_object()) return tags;
     for (const auto& [key, value] : properties.items()) {
@@ -83,15 +81,15 @@ OutlineTags tags_of_hstore(std::string_view text) {
     return tags;
 }
 
-OutlineTags tags_of_feature(const json& feature) {
-    const json& properties = member(feature, "properties");
+OutlineTags tags_of_feature(const JsonData& feature) {
+    const JsonData& properties = member(feature, "properties");
     OutlineTags tags = tags_of(properties);
     tags.merge(tags_of(member(properties, "tags")));
     tags.merge(tags_of_hstore(text_member(properties, "other_tags")));
     return tags;
 }
 
-void GeoJsonReader::read_polygon(const json& rings, const OutlineUse& use) {
+void GeoJsonReader::read_polygon(const JsonData& rings, const OutlineUse& use) {
     Outline outline{{}, use};
     bool good = rings.is_array() && !rings.empty();
     for (std::size_t i = 0; good && i < rings.size(); ++i)
@@ -102,28 +100,28 @@ void GeoJsonReader::read_polygon(const json& rings, const OutlineUse& use) {
         ++found_.dropped;
 }
 
-void GeoJsonReader::read_geometry(const json& geometry, const OutlineUse& use) {
+void GeoJsonReader::read_geometry(const JsonData& geometry, const OutlineUse& use) {
     const std::string_view type = text_member(geometry, "type");
     if (type == "Polygon") {
         read_polygon(member(geometry, "coordinates"), use);
     } else if (type == "MultiPolygon") {
-        const json& polygons = member(geometry, "coordinates");
+        const JsonData& polygons = member(geometry, "coordinates");
         if (!polygons.is_array()) ++found_.dropped;
         if (polygons.is_array())
-            for (const json& polygon : polygons)
+            for (const JsonData& polygon : polygons)
                 read_polygon(polygon, use);
     } else if (type == "GeometryCollection") {
-        const json& geometries = member(geometry, "geometries");
+        const JsonData& geometries = member(geometry, "geometries");
         // Nesting is bounded by parse_json().
         if (geometries.is_array())
-            for (const json& inner : geometries)
+            for (const JsonData& inner : geometries)
                 read_geometry(inner, use);
     } else {
         ++other_shapes_;
     }
 }
 
-void GeoJsonReader::read_feature(const json& feature) {
+void GeoJsonReader::read_feature(const JsonData& feature) {
     const OutlineUse use = outline_use(tags_of_feature(feature), settings_, unnamed_);
     if (use.kind == OutlineUse::Kind::none)
         ++other_uses_;
@@ -154,7 +152,7 @@ bool are_in_degrees(const std::vector<Outline>& outlines) {
     return turned.fits_degrees() || typical.is_of_degrees();
 }
 
-ReferenceSystem GeoJsonReader::find_system(const json& root) const {
+ReferenceSystem GeoJsonReader::find_system(const JsonData& root) const {
     auto named = reference_system_of_file(text_member(member(member(root, "crs"), "properties"), "name"), settings_);
     // GeoJSON writes longitude first whatever the system says.
     if (named) named->north_first = false;
@@ -173,17 +171,17 @@ ReferenceSystem GeoJsonReader::find_system(const json& root) const {
     return metres;
 }
 
-Result<Outlines> GeoJsonReader::read(const json& root) {
+Result<Outlines> GeoJsonReader::read(const JsonData& root) {
     const std::string_view type = text_member(root, "type");
     if (type == "FeatureCollection") {
-        const json& features = member(root, "features");
+        const JsonData& features = member(root, "features");
         if (!features.is_array())
             return fail(ErrorCode::input, fmt::format("{}: \"features\" is missing or no list", name_));
         // Exports of maps name their buildings among roads, car parks and lakes; footprints alone need no name.
         if (std::any_of(features.begin(), features.end(),
-                        [](const json& feature) { return tells_buildings(tags_of_feature(feature)); }))
+                        [](const JsonData& feature) { return tells_buildings(tags_of_feature(feature)); }))
             unnamed_ = UnnamedOutline::tall_house;
-        for (const json& feature : features)
+        for (const JsonData& feature : features)
             read_feature(feature);
     } else if (type == "Feature") {
         read_feature(root);

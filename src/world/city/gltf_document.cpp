@@ -13,8 +13,6 @@
 namespace skyloop::inline world {
 namespace {
 
-using nlohmann::json;
-
 std::uint32_t little_word(std::string_view bytes, std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = 4; i-- > 0;)
@@ -88,17 +86,17 @@ bool leaves_shapes(std::string_view extension) {
 
 }  // namespace
 
-std::optional<std::uint64_t> gltf_index(const json& object, const char* key) {
-    const json& found = member(object, key);
+std::optional<std::uint64_t> gltf_index(const JsonData& object, const char* key) {
+    const JsonData& found = member(object, key);
     return found.is_number_unsigned() ? std::optional(found.get<std::uint64_t>()) : std::nullopt;
 }
 
-std::vector<double> gltf_numbers(const json& object, const char* key, std::vector<double> otherwise) {
+std::vector<double> gltf_numbers(const JsonData& object, const char* key, std::vector<double> otherwise) {
     const auto found = object.is_object() ? object.find(key) : object.end();
     if (found == object.end()) return otherwise;
     std::vector<double> numbers;
     if (!found->is_array() || found->size() > 16) return numbers;
-    for (const json& number : *found) {
+    for (const JsonData& number : *found) {
         if (!number.is_number()) return {};
         numbers.push_back(number.get<double>());
     }
@@ -152,12 +150,12 @@ Result<void> GltfDocument::take_chunks(std::string_view bytes) {
         }
     }
     try {
-        root_ = json::parse(text);
-    } catch (const json::parse_error& error) {
+        root_ = JsonData::parse(text);
+    } catch (const JsonData::parse_error& error) {
         const std::size_t at = error.byte > 0 ? error.byte - 1 : 0;
         return wrong(before > 0 ? fmt::format("byte {}: is no JSON", before + at)
                                 : fmt::format("line {}: is no JSON", line_place("", text, at).substr(1)));
-    } catch (const json::exception&) {
+    } catch (const JsonData::exception&) {
         return wrong("its JSON holds a number beyond all bounds");
     }
     return {};
@@ -168,20 +166,20 @@ Result<void> GltfDocument::check_version() const {
     if (!version.starts_with("2."))
         return wrong(version.empty() ? "has no asset with a version of glTF"
                                      : fmt::format("glTF version {}; expected 2", shown(version)));
-    for (const json& extension : list("extensionsRequired"))
+    for (const JsonData& extension : list("extensionsRequired"))
         if (!extension.is_string() || !leaves_shapes(extension.get_ref<const std::string&>()))
             return wrong(fmt::format("needs the extension {}, which is not read",
                                      extension.is_string() ? shown(extension.get_ref<const std::string&>()) : "?"));
     return {};
 }
 
-const json& GltfDocument::list(const char* key) const {
-    static const json none = json::array();
-    const json& found = member(root_, key);
+const JsonData& GltfDocument::list(const char* key) const {
+    static const JsonData none = JsonData::array();
+    const JsonData& found = member(root_, key);
     return found.is_array() ? found : none;
 }
 
-Result<std::string> GltfDocument::load(const json& buffer) {
+Result<std::string> GltfDocument::load(const JsonData& buffer) {
     const std::string_view uri = text_member(buffer, "uri");
     if (uri.starts_with("data:")) {
         const std::size_t comma = uri.find(";base64,");
@@ -199,9 +197,9 @@ Result<std::string> GltfDocument::load(const json& buffer) {
 }
 
 Result<std::string_view> GltfDocument::buffer(std::uint64_t index) {
-    const json& buffers = list("buffers");
+    const JsonData& buffers = list("buffers");
     if (index >= buffers.size()) return wrong(fmt::format("names buffer {} of {}", index, buffers.size()));
-    const json& told = buffers[index];
+    const JsonData& told = buffers[index];
     const auto length = gltf_index(told, "byteLength");
     if (!length) return wrong(fmt::format("buffer {} has no byteLength", index));
     std::string_view bytes;
@@ -225,17 +223,17 @@ Result<std::string_view> GltfDocument::buffer(std::uint64_t index) {
 }
 
 Result<GltfNumbers> GltfDocument::numbers(std::uint64_t accessor, std::string_view type) {
-    const json& accessors = list("accessors");
+    const JsonData& accessors = list("accessors");
     if (accessor >= accessors.size()) return wrong(fmt::format("names accessor {} of {}", accessor, accessors.size()));
-    const json& told = accessors[accessor];
+    const JsonData& told = accessors[accessor];
     const auto view_index = gltf_index(told, "bufferView"), count = gltf_index(told, "count");
     const auto component = component_of_type(gltf_index(told, "componentType").value_or(0));
-    const json& views = list("bufferViews");
+    const JsonData& views = list("bufferViews");
     if (told.contains("sparse")) return wrong(fmt::format("accessor {} is sparse, which is not read", accessor));
     if (!count || !view_index || *view_index >= views.size() || text_member(told, "type") != type || !component)
         return wrong(
             fmt::format("accessor {}: expected a bufferView, a count, type {} and a componentType", accessor, type));
-    const json& view = views[*view_index];
+    const JsonData& view = views[*view_index];
     const auto buffer_index = gltf_index(view, "buffer");
     if (!buffer_index) return wrong(fmt::format("bufferView {} names no buffer", *view_index));
     const auto bytes = buffer(*buffer_index);
@@ -248,7 +246,7 @@ Result<GltfNumbers> GltfDocument::numbers(std::uint64_t accessor, std::string_vi
     GltfNumbers numbers;
     numbers.component = *component;
     numbers.components = type == "VEC3" ? 3 : 1;
-    numbers.normalized = told.value("normalized", json()) == json(true);
+    numbers.normalized = told.value("normalized", JsonData()) == JsonData(true);
     const std::uint64_t size = std::uint64_t{component->size} * numbers.components;
     const std::uint64_t stride = gltf_index(view, "byteStride").value_or(size);
     const std::uint64_t offset = gltf_index(told, "byteOffset").value_or(0);

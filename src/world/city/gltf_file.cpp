@@ -11,8 +11,6 @@
 namespace skyloop::inline world {
 namespace {
 
-using nlohmann::json;
-
 // Nodes within nodes beyond which a file is not believed; a city has a handful.
 constexpr int deepest_node = 64;
 
@@ -36,39 +34,39 @@ public:
 private:
     // Those of the scene that is to be shown, else all that are nobody's child.
     std::vector<std::uint64_t> roots() const {
-        const json& scenes = document_.list("scenes");
+        const JsonData& scenes = document_.list("scenes");
         const std::uint64_t shown_scene = gltf_index(document_.root(), "scene").value_or(0);
         std::vector<std::uint64_t> roots;
         if (shown_scene < scenes.size() && scenes[shown_scene].is_object()) {
-            for (const json& node : scenes[shown_scene].value("nodes", json::array()))
+            for (const JsonData& node : scenes[shown_scene].value("nodes", JsonData::array()))
                 if (node.is_number_unsigned()) roots.push_back(node.get<std::uint64_t>());
             return roots;
         }
-        const json& nodes = document_.list("nodes");
+        const JsonData& nodes = document_.list("nodes");
         std::vector<bool> child(nodes.size(), false);
-        for (const json& node : nodes)
+        for (const JsonData& node : nodes)
             for (const std::uint64_t each : children_of(node))
                 if (each < child.size()) child[each] = true;
         for (std::uint64_t i = 0; i < nodes.size(); ++i)
             if (!child[i]) roots.push_back(i);
         return roots;
     }
-    static std::vector<std::uint64_t> children_of(const json& node) {
+    static std::vector<std::uint64_t> children_of(const JsonData& node) {
         std::vector<std::uint64_t> children;
-        const json& told = member(node, "children");
+        const JsonData& told = member(node, "children");
         if (!told.is_array()) return children;
-        for (const json& child : told)
+        for (const JsonData& child : told)
             if (child.is_number_unsigned()) children.push_back(child.get<std::uint64_t>());
         return children;
     }
 
     // Whether other places than the node's own are told; readers may leave the extension aside, unless it is required.
-    static bool is_instanced(const json& node) {
+    static bool is_instanced(const JsonData& node) {
         return member(node, "extensions").contains("EXT_mesh_gpu_instancing");
     }
 
     // Section 3.5.3: a matrix by columns, or translation, rotation and scale.
-    Result<Eigen::Affine3d> transform_of(const json& node, std::uint64_t index) const {
+    Result<Eigen::Affine3d> transform_of(const JsonData& node, std::uint64_t index) const {
         const auto matrix = gltf_numbers(node, "matrix", {});
         const auto move = gltf_numbers(node, "translation", {0, 0, 0}),
                    turn = gltf_numbers(node, "rotation", {0, 0, 0, 1}), scale = gltf_numbers(node, "scale", {1, 1, 1});
@@ -89,12 +87,12 @@ private:
     }
 
     Result<void> add_node(std::uint64_t index, const Eigen::Affine3d& parent, int depth) {
-        const json& nodes = document_.list("nodes");
+        const JsonData& nodes = document_.list("nodes");
         if (index >= nodes.size()) return document_.wrong(fmt::format("names node {} of {}", index, nodes.size()));
         if (depth > deepest_node || visited_[index])
             return document_.wrong(fmt::format("node {} is its own child, another's too, or too deep", index));
         visited_[index] = true;
-        const json& node = nodes[index];
+        const JsonData& node = nodes[index];
         const auto own = transform_of(node, index);
         if (!own) return fail(own.error());
         const Eigen::Affine3d placed = parent * *own;
@@ -108,13 +106,13 @@ private:
     }
 
     Result<void> add_mesh(std::uint64_t index, const Eigen::Affine3d& placed, std::string_view node_name) {
-        const json& meshes = document_.list("meshes");
+        const JsonData& meshes = document_.list("meshes");
         if (index >= meshes.size() || !meshes[index].is_object())
             return document_.wrong(fmt::format("names mesh {} of {}", index, meshes.size()));
         const std::string_view mesh_name = text_member(meshes[index], "name");
-        for (const json& primitive : meshes[index].value("primitives", json::array())) {
+        for (const JsonData& primitive : meshes[index].value("primitives", JsonData::array())) {
             const auto material = gltf_index(primitive, "material");
-            const json& materials = document_.list("materials");
+            const JsonData& materials = document_.list("materials");
             const std::string_view material_name =
                 material && *material < materials.size() ? text_member(materials[*material], "name") : "";
             builder_.begin_mesh(placed);
@@ -124,7 +122,7 @@ private:
         return {};
     }
 
-    Result<void> add_primitive(const json& primitive, MeshPart part) {
+    Result<void> add_primitive(const JsonData& primitive, MeshPart part) {
         const std::uint64_t mode = gltf_index(primitive, "mode").value_or(4);
         if (mode < 4) return {};  // points and lines
         const auto position = gltf_index(member(primitive, "attributes"), "POSITION");

@@ -40,31 +40,31 @@ std::size_t too_deep_at(std::string_view text) {
 
 }  // namespace
 
-Result<nlohmann::json> parse_json(std::string_view text, std::string_view name, JsonText extent) {
+Result<JsonData> parse_json(std::string_view text, std::string_view name, JsonText extent) {
     const std::size_t deep = too_deep_at(text);
     if (deep != std::string_view::npos)
         return fail(ErrorCode::input, fmt::format("{}:{}: nested deeper than {} levels", name,
                                                   place_in(text, deep, extent), deepest_nesting));
     try {
-        return nlohmann::json::parse(text.begin(), text.end());
-    } catch (const nlohmann::json::parse_error& error) {
+        return JsonData::parse(text.begin(), text.end());
+    } catch (const JsonData::parse_error& error) {
         const std::size_t at = error.byte > 0 ? error.byte - 1 : 0;
         const char* what = at >= text.size() ? "the text ends within a value" : "this is no JSON";
         return fail(ErrorCode::input, fmt::format("{}:{}: {}", name, place_in(text, at, extent), what));
-    } catch (const nlohmann::json::exception&) {
+    } catch (const JsonData::exception&) {
         return fail(ErrorCode::input, fmt::format("{}: a number is larger than any can be", name));
     }
 }
 
-const nlohmann::json& member(const nlohmann::json& value, const char* key) {
-    static const nlohmann::json nothing;
+const JsonData& member(const JsonData& value, const char* key) {
+    static const JsonData nothing;
     if (!value.is_object()) return nothing;
     const auto found = value.find(key);
     return found == value.end() ? nothing : *found;
 }
 
-std::string_view text_member(const nlohmann::json& value, const char* key) {
-    const nlohmann::json& found = member(value, key);
+std::string_view text_member(const JsonData& value, const char* key) {
+    const JsonData& found = member(value, key);
     return found.is_string() ? std::string_view(found.get_ref<const std::string&>()) : std::string_view();
 }
 

@@ -2,25 +2,16 @@
 /// Values and tables of parameters as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/core/json.hpp"
 #include "base/core/result.hpp"
 #include "run/fault/command.hpp"
 #include "run/fault/parameters.hpp"
 
 namespace skyloop::inline run {
-
-/// Members stay in the order in which they are set.
-using Json = nlohmann::ordered_json;
-
-/// One line; bytes that are no UTF-8 become replacement characters, numbers that are none null.
-inline std::string json_text(const Json& value) {
-    return value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
 
 /// The members of the one object that `text` is. Fails with `input` for anything else, for members that stand there
 /// twice, and for values that no parameter takes.

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/core/json.hpp"
 #include "companion_files.hpp"
 
 namespace skyloop::inline world {
@@ -41,9 +41,9 @@ public:
     static Result<GltfDocument> parse(std::string_view bytes, std::string_view name, const CompanionFiles& companions,
                                       std::size_t most_bytes);
 
-    [[nodiscard]] const nlohmann::json& root() const { return root_; }
+    [[nodiscard]] const JsonData& root() const { return root_; }
     /// An array of the document's root; an empty one where there is none.
-    [[nodiscard]] const nlohmann::json& list(const char* key) const;
+    [[nodiscard]] const JsonData& list(const char* key) const;
     /// The numbers of an accessor of `type` ("VEC3", "SCALAR"). Fails with `input` and what is wrong.
     Result<GltfNumbers> numbers(std::uint64_t accessor, std::string_view type);
     [[nodiscard]] tl::unexpected<Error> wrong(std::string_view what) const;
@@ -52,19 +52,19 @@ private:
     Result<void> take_chunks(std::string_view bytes);
     Result<void> check_version() const;
     Result<std::string_view> buffer(std::uint64_t index);
-    Result<std::string> load(const nlohmann::json& buffer);
+    Result<std::string> load(const JsonData& buffer);
 
     std::string name_;
     CompanionFiles companions_;
-    nlohmann::json root_;
+    JsonData root_;
     std::optional<std::string_view> binary_;
     std::vector<std::optional<std::string>> loaded_;
     std::size_t loaded_bytes_ = 0, most_bytes_ = 0;
 };
 
 /// A whole number that is not negative; nothing when there is none of that name.
-std::optional<std::uint64_t> gltf_index(const nlohmann::json& object, const char* key);
+std::optional<std::uint64_t> gltf_index(const JsonData& object, const char* key);
 /// All numbers of an array, `otherwise` when there is none of that name; empty when it holds something else.
-std::vector<double> gltf_numbers(const nlohmann::json& object, const char* key, std::vector<double> otherwise);
+std::vector<double> gltf_numbers(const JsonData& object, const char* key, std::vector<double> otherwise);
 
 }  // namespace skyloop::inline world
