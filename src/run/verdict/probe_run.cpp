@@ -30,13 +30,7 @@ constexpr std::array<Operator, 6> operators{{{"==", Relation::equal},
                                              {"<", Relation::below},
                                              {">", Relation::above}}};
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t'))
-        text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t'))
-        text.remove_suffix(1);
-    return text;
-}
+constexpr std::string_view word_blanks = " \t";
 
 tl::unexpected<SentenceMistake> condition_mistake(std::size_t column, std::string sentence) {
     return tl::make_unexpected(SentenceMistake{column, std::move(sentence)});
@@ -121,7 +115,7 @@ std::string value_text(const ConditionValue& value) {
 tl::expected<JsonCondition, SentenceMistake> parse_json_condition(std::string_view text) {
     if (text.size() > 1000) return condition_mistake(1, "is longer than 1000 characters");
     const std::size_t sign = text.find_first_of("=!<>");
-    const std::string_view path_words = trimmed(text.substr(0, sign));
+    const std::string_view path_words = trimmed(text.substr(0, sign), word_blanks);
     const auto path = parse_path(path_words);
     if (!path)
         return condition_mistake(
@@ -138,7 +132,7 @@ tl::expected<JsonCondition, SentenceMistake> parse_json_condition(std::string_vi
     if (length == 0)
         return condition_mistake(
             sign + 1, fmt::format("'{}' is no comparison; expected one of == != < <= > >=", text.substr(sign, 1)));
-    const std::string_view value_words = trimmed(text.substr(sign + length));
+    const std::string_view value_words = trimmed(text.substr(sign + length), word_blanks);
     const auto value = parse_condition_value(value_words);
     if (!value)
         return condition_mistake(sign + length + 1, fmt::format("'{}' is no value; expected a number, true, false or a "

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
+#include "base/core/words.hpp"
 #include "base/time/gps_time.hpp"
 
 namespace skyloop::inline world::rinex {
@@ -39,8 +40,6 @@ private:
 std::string_view without_byte_order_mark(std::string_view text);
 /// Columns `first` (from 0) and on, as far as the line goes.
 std::string_view columns(std::string_view line, std::size_t first, std::size_t width);
-/// Without blanks at either end.
-std::string_view trimmed(std::string_view text, std::string_view blanks = " ");
 inline bool is_blank(std::string_view text) { return trimmed(text).empty(); }
 
 /// The words of a line, parted by blanks and tabs.
