@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 
 #include "world/propagation/gas_attenuation_p676.hpp"
@@ -86,13 +85,12 @@ Decibels GasLossTable::loss(Angle elevation, Metres antenna_height) {
 }
 
 void GasLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0) return;
     const MslHeight height = sea_level_height(truth.geodetic, geoid_);
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const Angle apparent = apparent_elevation(sky.satellites[i].elevation, height);
-        arrivals.satellites[i].gas_loss = table_->loss(apparent, height.above_sea_level) * factor_;
-    }
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        const Angle apparent = apparent_elevation(satellite.elevation, height);
+        arrival.gas_loss = table_->loss(apparent, height.above_sea_level) * factor_;
+    });
 }
 
 namespace {
@@ -117,45 +115,40 @@ CloudLoss::CloudLoss(const std::vector<CloudDeck>& decks, const ErrorTerm& term,
 }
 
 void CloudLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0 || decks_.empty()) return;
     const Metres height = sea_level_height(truth.geodetic, geoid_).above_sea_level;
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        const SphericalRay ray = ray_over_sea(satellite, height);
         Decibels loss;
-        for (const Deck& deck : decks_) {
-            if (deck.top <= height) continue;
-            loss +=
-                loss_over(deck.attenuation, shell_path(ray_over_sea(sky.satellites[i], height), deck.base, deck.top));
-        }
-        arrivals.satellites[i].cloud_loss = loss * factor_;
-    }
+        for (const Deck& deck : decks_)
+            if (deck.top > height) loss += loss_over(deck.attenuation, shell_path(ray, deck.base, deck.top));
+        arrival.cloud_loss = loss * factor_;
+    });
 }
 
 void RainLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0 || rain_.rate_mm_h <= 0) return;
     const Metres height = sea_level_height(truth.geodetic, geoid_).above_sea_level;
     if (height >= rain_.top) return;
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const SphericalRay ray = ray_over_sea(sky.satellites[i], height);
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        const SphericalRay ray = ray_over_sea(satellite, height);
         const double level = std::cos(ray.elevation.rad());
         Metres path = path_to_height(ray, rain_.top);
         if (path.value() * level > cell_.value()) path = cell_ / level;
         const auto attenuation = rain_attenuation(rain_, Hertz(carrier_frequency_l1), ray.elevation);
-        arrivals.satellites[i].rain_loss = loss_over(attenuation, path) * factor_;
-    }
+        arrival.rain_loss = loss_over(attenuation, path) * factor_;
+    });
 }
 
 void FoliageLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& /*truth*/) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0 || parameters_.canopy_depth.value() <= 0) return;
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const Angle elevation = sky.satellites[i].elevation;
-        if (elevation > parameters_.canopy_top) continue;
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        const Angle elevation = satellite.elevation;
+        if (elevation > parameters_.canopy_top) return;
         const double metres = parameters_.canopy_depth.value() * parameters_.canopy_density / std::cos(elevation.rad());
         const Decibels loss(parameters_.canopy_db_per_m * metres);
-        arrivals.satellites[i].foliage_loss = std::min(loss, parameters_.most_foliage) * factor_;
-    }
+        arrival.foliage_loss = std::min(loss, parameters_.most_foliage) * factor_;
+    });
 }
 
 }  // namespace skyloop::inline world

@@ -141,10 +141,6 @@ GasAttenuation gas_attenuation_p676(const ReferenceAir& air, Hertz carrier) {
             DecibelsPerKilometre(per_refractivity * vapour_refractivity(symbols, f))};
 }
 
-Decibels slant_gas_attenuation_p676(Hertz carrier, Angle apparent, Metres antenna_height) {
-    return slant_gas_attenuation_p676(carrier, std::span<const Angle>(&apparent, 1), antenna_height).front();
-}
-
 std::vector<Decibels> slant_gas_attenuation_p676(Hertz carrier, std::span<const Angle> apparent,
                                                  Metres antenna_height) {
     double height_km = std::clamp(antenna_height.value() / 1000, 0.0, p676_top_km);

@@ -34,11 +34,11 @@ struct GasAttenuation {
 GasAttenuation gas_attenuation_p676(const ReferenceAir& air, Hertz carrier);
 
 /// Along the bent ray from an antenna through the reference atmosphere to 100 km: layers that grow by 1 %, Snell's law
-/// between them (ITU-R P.676-13, Annex 1, section 2.2; refractivity of P.453).
-/// @param apparent elevation at the antenna, above the horizon
+/// between them (ITU-R P.676-13, Annex 1, section 2.2; refractivity of P.453). Several rays from one antenna cost
+/// little more than one.
+/// @param apparent elevations at the antenna, above the horizon
 /// @param antenna_height above sea level
-Decibels slant_gas_attenuation_p676(Hertz carrier, Angle apparent, Metres antenna_height);
-/// The same along several rays from one antenna, for little more than the price of one.
+/// @returns one for each elevation
 std::vector<Decibels> slant_gas_attenuation_p676(Hertz carrier, std::span<const Angle> apparent, Metres antenna_height);
 
 }  // namespace skyloop::inline world

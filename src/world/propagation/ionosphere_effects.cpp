@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -21,8 +20,6 @@
 namespace skyloop::inline world {
 namespace {
 
-SkyDirection direction_of(const SatelliteInView& satellite) { return {satellite.azimuth, satellite.elevation}; }
-
 bool stands_below(const ThinShell& shell, const TruthState& truth) {
     return truth.geodetic.height.above_ellipsoid < shell.height;
 }
@@ -30,40 +27,27 @@ bool stands_below(const ThinShell& shell, const TruthState& truth) {
 constexpr ThinShell klobuchar_shell{Metres(6371000), Metres(350000)};
 constexpr ThinShell ntcm_g_shell{Metres(6371000), Metres(450000)};
 
-class KlobucharTruth : public IonosphereTruth {
-public:
-    explicit KlobucharTruth(const KlobucharCoefficients& coefficients) : coefficients_(coefficients) {}
-    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+IonosphereTruth klobuchar_truth(const KlobucharCoefficients& coefficients) {
+    return [coefficients](const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) {
         if (!stands_below(klobuchar_shell, truth)) return Metres(0);
         // The very numbers of a receiver that corrects with the same coefficients.
-        const auto at_l1 = klobuchar_delay(coefficients_, truth.geodetic, direction_of(satellite), truth.time).slant;
+        const auto at_l1 = klobuchar_delay(coefficients, truth.geodetic, direction_of(satellite), truth.time).slant;
         return ionosphere_delay_at(at_l1, carrier);
-    }
+    };
+}
 
-private:
-    KlobucharCoefficients coefficients_;
-};
-
-class NtcmGTruth : public IonosphereTruth {
-public:
-    NtcmGTruth(const EffectiveIonisation& ionisation, LeapSeconds leap_seconds)
-        : ionisation_(ionisation), leap_seconds_(std::move(leap_seconds)) {}
-    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+IonosphereTruth ntcm_g_truth(const EffectiveIonisation& ionisation, const LeapSeconds& leap_seconds) {
+    return [ionisation, leap_seconds, time = GpsTime(Nanoseconds::min()), when = IonosphereTime{}](
+               const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) mutable {
         if (!stands_below(ntcm_g_shell, truth)) return Metres(0);
-        if (truth.time != time_) {
-            time_ = truth.time;
-            when_ = IonosphereTime::of(to_utc(time_, leap_seconds_));
+        if (truth.time != time) {
+            time = truth.time;
+            when = IonosphereTime::of(to_utc(time, leap_seconds));
         }
         const SkyDirection direction{satellite.azimuth, above_horizon(satellite.elevation)};
-        return ionosphere_group_delay(ntcm_g_content(ionisation_, truth.geodetic, direction, when_), carrier);
-    }
-
-private:
-    EffectiveIonisation ionisation_;
-    LeapSeconds leap_seconds_;
-    GpsTime time_{Nanoseconds::min()};
-    IonosphereTime when_;
-};
+        return ionosphere_group_delay(ntcm_g_content(ionisation, truth.geodetic, direction, when), carrier);
+    };
+}
 
 // A vertical content over a shell, towards a satellite.
 Metres shell_delay(const ThinShell& shell, Tecu vertical, const SatelliteInView& satellite, const TruthState& truth,
@@ -72,38 +56,23 @@ Metres shell_delay(const ThinShell& shell, Tecu vertical, const SatelliteInView&
     return ionosphere_group_delay(vertical * mapping, carrier);
 }
 
-class ConstantTruth : public IonosphereTruth {
-public:
-    explicit ConstantTruth(Tecu vertical) : vertical_(vertical) {}
-    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
-        if (!stands_below({}, truth)) return Metres(0);
-        return shell_delay({}, vertical_, satellite, truth, carrier);
-    }
+IonosphereTruth constant_truth(Tecu vertical) {
+    return [vertical](const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) {
+        return stands_below({}, truth) ? shell_delay({}, vertical, satellite, truth, carrier) : Metres(0);
+    };
+}
 
-private:
-    Tecu vertical_;
-};
-
-class MapTruth : public IonosphereTruth {
-public:
-    explicit MapTruth(IonosphereMaps maps) : maps_(std::move(maps)) {}
-    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
-        if (!stands_below(maps_.shell, truth)) return Metres(0);
-        const PiercePoint where = pierce_point(maps_.shell, truth.geodetic, direction_of(satellite));
-        // From the run's start on and on the globe there is a value everywhere: the maps have been searched for holes.
-        return shell_delay(maps_.shell, held_content(maps_, where, truth.time).value_or(Tecu(0)), satellite, truth,
-                           carrier);
-    }
-
-private:
-    IonosphereMaps maps_;
-};
-
-Result<std::unique_ptr<IonosphereTruth>> make_map_truth(const ModernContext& context) {
+Result<IonosphereTruth> map_truth(const ModernContext& context) {
     if (!context.maps)
         return fail(ErrorCode::input, "the ionosphere is to come from maps and none are given; expected an IONEX file");
     if (const auto covered = check_coverage(*context.maps, context.run); !covered) return fail(covered.error());
-    return std::make_unique<MapTruth>(context.maps->maps);
+    return [maps = context.maps->maps](const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) {
+        if (!stands_below(maps.shell, truth)) return Metres(0);
+        const PiercePoint where = pierce_point(maps.shell, truth.geodetic, direction_of(satellite));
+        // From the run's start on and on the globe there is a value everywhere: the maps have been searched for holes.
+        const Tecu vertical = held_content(maps, where, truth.time).value_or(Tecu(0));
+        return shell_delay(maps.shell, vertical, satellite, truth, carrier);
+    };
 }
 
 EffectiveIonisation ionisation_of(const IonosphereParameters& parameters, const BroadcastIonosphere& broadcast) {
@@ -114,21 +83,20 @@ EffectiveIonisation ionisation_of(const IonosphereParameters& parameters, const 
 
 }  // namespace
 
-Result<std::unique_ptr<IonosphereTruth>> make_ionosphere_truth(const IonosphereParameters& parameters,
-                                                               const ModernContext& context) {
+Result<IonosphereTruth> make_ionosphere_truth(const IonosphereParameters& parameters, const ModernContext& context) {
     switch (parameters.model) {
         case IonosphereModel::klobuchar:
-            return std::make_unique<KlobucharTruth>(context.broadcast.gps.value_or(parameters.klobuchar));
+            return klobuchar_truth(context.broadcast.gps.value_or(parameters.klobuchar));
         case IonosphereModel::nequick_g:
             return make_nequick_truth(ionisation_of(parameters, context.broadcast), context);
         case IonosphereModel::ionex:
-            return make_map_truth(context);
+            return map_truth(context);
         case IonosphereModel::constant:
-            return std::make_unique<ConstantTruth>(parameters.constant_content);
+            return constant_truth(parameters.constant_content);
         case IonosphereModel::ntcm_g:
             break;
     }
-    return std::make_unique<NtcmGTruth>(ionisation_of(parameters, context.broadcast), context.leap_seconds);
+    return ntcm_g_truth(ionisation_of(parameters, context.broadcast), context.leap_seconds);
 }
 
 namespace {
@@ -145,12 +113,12 @@ Position<Ecef> carried_ahead(const SatelliteInView& satellite, Seconds dt) {
     return Position<Ecef>(p + dt.value() * v + dt.value() * dt.value() / 2 * acceleration);
 }
 
-class NequickTruth : public IonosphereTruth {
+class NequickTruth {
 public:
     NequickTruth(std::vector<NequickTables> months, const EffectiveIonisation& ionisation, LeapSeconds leap_seconds)
         : months_(std::move(months)), ionisation_(ionisation), leap_seconds_(std::move(leap_seconds)) {}
 
-    Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) override {
+    Metres operator()(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) {
         Content& content = contents_.of(satellite.id, [](SatelliteId) { return Content{}; });
         const std::int64_t knot = truth.time.time_since_epoch() / nequick_spacing;
         if (content.knot != knot) {
@@ -190,8 +158,7 @@ constexpr std::array<const char*, 12> month_names{"January",   "February", "Marc
 
 }  // namespace
 
-Result<std::unique_ptr<IonosphereTruth>> make_nequick_truth(const EffectiveIonisation& ionisation,
-                                                            const ModernContext& context) {
+Result<IonosphereTruth> make_nequick_truth(const EffectiveIonisation& ionisation, const ModernContext& context) {
     // All of the year, for a run need not have an end.
     std::vector<NequickTables> months;
     for (const char* name : month_names) {
@@ -201,7 +168,7 @@ Result<std::unique_ptr<IonosphereTruth>> make_nequick_truth(const EffectiveIonis
                         fmt::format("NeQuick-G has no tables for {}: {}", name, read.error().message));
         months.push_back(std::move(*read));
     }
-    return std::make_unique<NequickTruth>(std::move(months), ionisation, context.leap_seconds);
+    return NequickTruth(std::move(months), ionisation, context.leap_seconds);
 }
 
 namespace {
@@ -231,7 +198,7 @@ double IonosphereResidual::share(SatelliteId satellite, const SkyDirection& dire
            parameters_.single * single.at(time);
 }
 
-IonosphereDelay::IonosphereDelay(std::unique_ptr<IonosphereTruth> model, const ModernPropagationParameters& parameters,
+IonosphereDelay::IonosphereDelay(IonosphereTruth model, const ModernPropagationParameters& parameters,
                                  const ResidualReach& residual, std::uint64_t seed)
     : model_(std::move(model)),
       residual_(parameters.ionosphere_model, parameters.ionosphere_residual, seed),
@@ -240,19 +207,15 @@ IonosphereDelay::IonosphereDelay(std::unique_ptr<IonosphereTruth> model, const M
       residual_factor_(parameters.ionosphere_residual.factor()) {}
 
 void IonosphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0) return;
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const SatelliteInView& satellite = sky.satellites[i];
-        Arrival& arrival = arrivals.satellites[i];
-        arrival.iono_delay = model_->delay(satellite, truth, first_carrier(arrival)) * factor_;
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        arrival.iono_delay = model_(satellite, truth, first_carrier(arrival)) * factor_;
         const bool departs = satellite.id.constellation == Constellation::galileo ? reach_.galileo : reach_.others;
-        if (residual_factor_ == 0 || !departs) continue;
-        const SkyDirection direction{satellite.azimuth, satellite.elevation};
-        const double share = residual_.share(satellite.id, direction, truth.geodetic, truth.time);
+        if (residual_factor_ == 0 || !departs) return;
+        const double share = residual_.share(satellite.id, direction_of(satellite), truth.geodetic, truth.time);
         // However the day departs from the model, electrons never speed the code up.
         arrival.iono_delay = arrival.iono_delay * std::max(1 + residual_factor_ * share, 0.0);
-    }
+    });
 }
 
 namespace {
@@ -288,13 +251,11 @@ ScintillationIndices::ScintillationIndices(const ScintillationParameters& parame
     : parameters_(parameters), factor_(term.factor()), leap_seconds_(std::move(leap_seconds)) {}
 
 void ScintillationIndices::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0 || (parameters_.s4 == 0 && parameters_.sigma_phi.rad() == 0)) return;
     if (truth.geodetic.height.above_ellipsoid >= scintillation_shell.height) return;
     const double hours = to_utc(truth.time, leap_seconds_).seconds_of_day() / 3600;
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        Arrival& arrival = arrivals.satellites[i];
-        const SkyDirection direction{sky.satellites[i].azimuth, sky.satellites[i].elevation};
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        const SkyDirection direction = direction_of(satellite);
         const PiercePoint pierce = pierce_point(scintillation_shell, truth.geodetic, direction);
         const double share = factor_ * evening_share(parameters_, {pierce.latitude, pierce.longitude, {}}, hours);
         const double slant =
@@ -303,7 +264,7 @@ void ScintillationIndices::apply(Arrivals& arrivals, const SkyView& sky, const T
         arrival.amplitude_scintillation =
             std::min(parameters_.s4 * share * std::pow(slant, 0.9) * std::pow(wavelength, 1.5), strongest_s4);
         arrival.phase_scintillation = parameters_.sigma_phi * (share * std::sqrt(slant) * wavelength);
-    }
+    });
 }
 
 }  // namespace skyloop::inline world

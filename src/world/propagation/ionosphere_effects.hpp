@@ -5,7 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <functional>
 #include <optional>
 
 #include "base/core/result.hpp"
@@ -19,26 +19,19 @@
 
 namespace skyloop::inline world {
 
-/// How much a model of the ionosphere delays the code of a satellite.
-class IonosphereTruth {
-public:
-    virtual ~IonosphereTruth() = default;
-    /// The delay along the ray; instants come in ascending order.
-    virtual Metres delay(const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) = 0;
-};
+/// How much a model of the ionosphere delays the code of a satellite along its ray; instants come in ascending order.
+using IonosphereTruth = std::function<Metres(const SatelliteInView&, const TruthState&, Hertz carrier)>;
 
 /// The model that the parameters name: with the coefficients of the broadcast, or the parameters' own where the
 /// broadcast has none. Over a thin shell (ionex, constant) a delay is mapped by single_layer_mapping(); above the shell
 /// there is none. Past the last of its maps ionex holds that one, turned with the Sun. Fails as modern_effects() does.
-Result<std::unique_ptr<IonosphereTruth>> make_ionosphere_truth(const IonosphereParameters& parameters,
-                                                               const ModernContext& context);
+Result<IonosphereTruth> make_ionosphere_truth(const IonosphereParameters& parameters, const ModernContext& context);
 
 /// NeQuick-G, each month by its own tables. It takes a millisecond or so a ray: each satellite's is traced for the
 /// whole half minutes of GPS time alone, from where satellite and antenna then are, and the electron content is linear
 /// in between. The satellite is carried ahead of the epoch by its velocity and the Earth's attraction, to within a
 /// metre. Fails when the folder lacks a table, naming the month.
-Result<std::unique_ptr<IonosphereTruth>> make_nequick_truth(const EffectiveIonisation& ionisation,
-                                                            const ModernContext& context);
+Result<IonosphereTruth> make_nequick_truth(const EffectiveIonisation& ionisation, const ModernContext& context);
 
 /// What departs from a model of the ionosphere, as a share of its delay: s_v x_v + s_g ψ/9° (x_n cos A + x_e sin A) +
 /// s_i x_i, with ψ the angle at the centre of the Earth to the pierce point (MODELS.md 7.2, whose 0.05 are
@@ -69,13 +62,13 @@ struct ResidualReach {
 /// residual's share of it.
 class IonosphereDelay : public PropagationEffect {
 public:
-    /// @param model not null  @param residual by the parameters' choice
-    IonosphereDelay(std::unique_ptr<IonosphereTruth> model, const ModernPropagationParameters& parameters,
-                    const ResidualReach& residual, std::uint64_t seed);
+    /// @param model not empty  @param residual by the parameters' choice
+    IonosphereDelay(IonosphereTruth model, const ModernPropagationParameters& parameters, const ResidualReach& residual,
+                    std::uint64_t seed);
     void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
 
 private:
-    std::unique_ptr<IonosphereTruth> model_;
+    IonosphereTruth model_;
     IonosphereResidual residual_;
     ResidualReach reach_;
     double factor_, residual_factor_;

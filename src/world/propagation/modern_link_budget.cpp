@@ -1,7 +1,6 @@
 #include "world/propagation/modern_link_budget.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "world/gnss/signal.hpp"
@@ -17,26 +16,6 @@ constexpr Nanoseconds ripple_spacing = std::chrono::seconds(5);
 constexpr double geosynchronous_radius = 42164e3;
 
 double link_ratio(double decibels) { return std::pow(10, decibels / 10); }
-
-DecibelWatts nominal_received_power(Constellation constellation, const ModernLinkParameters::ReceivedPower& p) {
-    switch (constellation) {
-        case Constellation::sbas:
-            return p.sbas;
-        case Constellation::galileo:
-            return p.galileo;
-        case Constellation::beidou:
-            return p.beidou;
-        case Constellation::qzss:
-            return p.qzss;
-        case Constellation::glonass:
-            return p.glonass;
-        case Constellation::navic:
-            return p.navic;
-        case Constellation::gps:
-            break;
-    }
-    return p.gps;
-}
 
 // Whether a satellite of BeiDou is one of the high ones.
 bool is_geosynchronous(Metres range) { return range.value() > 30000e3; }
@@ -119,7 +98,7 @@ DecibelWatts ModernLinkBudget::isotropic_power(const Arrival& arrival, const Tru
         const Angle theta = off_boresight_angle(ray, Metres(orbit));
         return DecibelWatts(eirp_at(link_.satellite_pattern, theta).value() - arrival.free_space_loss.value());
     }
-    const DecibelWatts nominal = nominal_received_power(arrival.id.constellation, link_.received);
+    const DecibelWatts nominal = of_system(link_.received, arrival.id);
     if (arrival.range.value() <= 0) return nominal;
     const Metres distance = path_to_height(ray, Metres(radius) - ray.earth_radius);
     return nominal - DecibelWatts(20 * std::log10(arrival.range.value() / distance.value()));
@@ -155,11 +134,9 @@ void ModernLinkBudget::set_cn0(Arrival& arrival, const TruthState& truth) const 
     arrival.cn0 = clear - DbHz(arrival.interference_loss.value());
 }
 
-void ModernLinkBudget::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
+void ModernLinkBudget::apply(Arrivals& arrivals, const SkyView& /*sky*/, const TruthState& truth) {
     const double power_factor = power_term_.factor();
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        Arrival& arrival = arrivals.satellites[i];
+    for (Arrival& arrival : arrivals.satellites) {
         for (SignalArrival& signal : arrival.signals)
             signal.relative_power = relative_signal_power(arrival.id.constellation, signal.signal, arrival.range);
         if (antenna_factor_ != 0)

@@ -152,6 +152,31 @@ struct ScintillationParameters {
     Angle crest_width = Angle::degrees(8);  ///< 1 σ, towards the poles; between the crests half is left
 };
 
+/// Which of the values of SignalInSpaceParameters or ReceivedPower, one for each system, is that of a satellite.
+template <class Values>
+auto of_system(const Values& values, SatelliteId satellite) {
+    switch (satellite.constellation) {
+        case Constellation::sbas:
+            return values.sbas;
+        case Constellation::galileo:
+            return values.galileo;
+        case Constellation::beidou:
+            if constexpr (requires { values.beidou; })
+                return values.beidou;
+            else
+                return satellite.number <= 18 ? values.beidou2 : values.beidou3;
+        case Constellation::qzss:
+            return values.qzss;
+        case Constellation::glonass:
+            return values.glonass;
+        case Constellation::navic:
+            return values.navic;
+        case Constellation::gps:
+            break;
+    }
+    return values.gps;
+}
+
 /// All of it.
 struct ModernPropagationParameters {
     SignalInSpaceParameters signal_in_space_model;

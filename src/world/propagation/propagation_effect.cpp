@@ -16,7 +16,7 @@ namespace {
 Arrival arrival_of(const SatelliteInView& satellite) {
     Arrival arrival;
     arrival.id = satellite.id;
-    arrival.direction = {satellite.azimuth, satellite.elevation};
+    arrival.direction = direction_of(satellite);
     arrival.range = satellite.range;
     arrival.range_rate = satellite.range_rate;
     arrival.clock_bias = satellite.clock_bias;

@@ -3,6 +3,8 @@
 /// A satellite that does not arrive.
 #pragma once
 
+#include <cassert>
+
 #include "base/core/units.hpp"
 #include "world/flow/arrivals.hpp"
 #include "world/flow/sky_view.hpp"
@@ -17,6 +19,17 @@ public:
     /// @param arrivals one for each satellite of `sky`, in its order
     virtual void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) = 0;
 };
+
+/// Calls with(arrival, satellite) for each satellite of `sky`. @param arrivals one for each, in its order
+template <class With>
+void for_each_arrival(Arrivals& arrivals, const SkyView& sky, With&& with) {
+    assert(arrivals.satellites.size() == sky.satellites.size());
+    for (std::size_t i = 0; i < sky.satellites.size(); ++i)
+        with(arrivals.satellites[i], sky.satellites[i]);
+}
+
+/// Where a satellite stands in the antenna's sky.
+inline SkyDirection direction_of(const SatelliteInView& satellite) { return {satellite.azimuth, satellite.elevation}; }
 
 /// 20 log10(4π d f / c) (MODELS.md 3.6, L_s).
 Decibels free_space_loss(Metres distance, Hertz carrier);

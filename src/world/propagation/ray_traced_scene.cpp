@@ -246,7 +246,7 @@ void arrive_by_rays(Arrival& arrival, const SceneRays& city, const ArrivingSatel
         arrival.reflection_loss = loss.edges;
         arrival.foliage_loss += loss.foliage;
         ArrivingRay direct;
-        direct.amplitude = std::pow(10, -(loss.edges + loss.foliage).value() / 20);
+        direct.amplitude = amplitude_of(loss.edges + loss.foliage);
         return follow(arrival, direct, rays, arriving.to_antenna);
     }
     if (rays.empty()) return hide(arrival);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -27,7 +26,7 @@ Tecu tec_of_vertical_delay(Metres vertical_delay) { return Tecu(vertical_delay.v
 
 Tecu TecIonosphereDelay::vertical_content(const SatelliteInView& satellite, const TruthState& truth) const {
     if (const Tecu* constant = std::get_if<Tecu>(&content_)) return *constant;
-    const SkyDirection direction{satellite.azimuth, satellite.elevation};
+    const SkyDirection direction = direction_of(satellite);
     if (const IonosphereMaps* maps = std::get_if<IonosphereMaps>(&content_))
         return held_content(*maps, pierce_point(maps->shell, truth.geodetic, direction), truth.time).value_or(Tecu(0));
     const auto& broadcast = std::get<KlobucharCoefficients>(content_);
@@ -35,11 +34,9 @@ Tecu TecIonosphereDelay::vertical_content(const SatelliteInView& satellite, cons
 }
 
 void TecIonosphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const SatelliteInView& satellite = sky.satellites[i];
-        arrivals.satellites[i].iono_delay = tec_delay(vertical_content(satellite, truth), satellite.elevation);
-    }
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        arrival.iono_delay = tec_delay(vertical_content(satellite, truth), satellite.elevation);
+    });
 }
 
 DryAndWetDelay zenith_delay(const AtmosphereParameters& atmosphere, MslHeight height) {
@@ -57,12 +54,12 @@ NiellTroposphereDelay::NiellTroposphereDelay(const AtmosphereParameters& atmosph
     : atmosphere_(atmosphere), geoid_(geoid), leap_seconds_(std::move(leap_seconds)) {}
 
 void NiellTroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     const MappingSite site{truth.geodetic.latitude, sea_level_height(truth.geodetic, geoid_),
                            day_of_year(to_utc(truth.time, leap_seconds_))};
     const DryAndWetDelay zenith = zenith_delay(atmosphere_, site.height);
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i)
-        arrivals.satellites[i].tropo_delay = slant_delay(zenith, site, above_horizon(sky.satellites[i].elevation));
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        arrival.tropo_delay = slant_delay(zenith, site, above_horizon(satellite.elevation));
+    });
 }
 
 namespace {
@@ -134,21 +131,12 @@ Angle refraction_bending(Angle free_space_elevation, MslHeight antenna) {
                                h * h * (0.01727 + 0.008288 * t)));
 }
 
-Angle refraction_bending_of_apparent(Angle apparent, MslHeight antenna) {
-    const double t = apparent.deg();
-    const double h = std::clamp(antenna.above_sea_level.value() / 1000, 0.0, 3.0);
-    return Angle::degrees(
-        1 / (1.314 + 0.6437 * t + 0.02869 * t * t + h * (0.2305 + 0.09428 * t + 0.01096 * t * t) + h * h * 0.008583));
-}
-
 void RefractionDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     const MslHeight height = sea_level_height(truth.geodetic, geoid_);
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const Angle elevation = sky.satellites[i].elevation;
-        const Angle apparent = elevation + refraction_bending(elevation, height);
-        arrivals.satellites[i].tropo_delay = trace_ray(air_, apparent, height).excess();
-    }
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        const Angle apparent = satellite.elevation + refraction_bending(satellite.elevation, height);
+        arrival.tropo_delay = trace_ray(air_, apparent, height).excess();
+    });
 }
 
 }  // namespace skyloop::inline world

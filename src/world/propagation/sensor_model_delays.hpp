@@ -89,8 +89,6 @@ RefractedRay trace_ray(const ExponentialRefractivity& air, Angle apparent, MslHe
 /// atmosphere; MODELS.md 7.6). Fitted up to 10°; above, it fades to nothing, as it should, a hundredth of a degree too
 /// soon.
 Angle refraction_bending(Angle free_space_elevation, MslHeight antenna);
-/// The same, seen from the ray's end: what to take from an apparent elevation to find the straight line.
-Angle refraction_bending_of_apparent(Angle apparent, MslHeight antenna);
 
 /// Writes the excess path of each arrival as its tropospheric delay (MODELS.md section 6, refraction).
 class RefractionDelay : public PropagationEffect {

@@ -1,7 +1,6 @@
 #include "world/propagation/sensor_model_losses.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -51,20 +50,18 @@ std::vector<LayeredAtmosphereLoss::Shell> LayeredAtmosphereLoss::clouds_above(Me
 }
 
 void LayeredAtmosphereLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     const Metres height = truth.geodetic.height.above_ellipsoid;
     const auto air = air_above(height);
     const auto clouds = clouds_above(height);
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const SphericalRay ray{sky.satellites[i].elevation, height, atmosphere_.earth_radius};
-        Arrival& arrival = arrivals.satellites[i];
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        const SphericalRay ray{satellite.elevation, height, atmosphere_.earth_radius};
         arrival.gas_loss = loss_through(air, ray);
         arrival.cloud_loss = loss_through(clouds, ray);
         arrival.rain_loss = loss_over(rain_attenuation(atmosphere_.rain, carrier_, ray.elevation),
                                       path_to_height(ray, atmosphere_.rain.top));
         const Angle there = elevation_at_height(ray, atmosphere_.ionosphere_base);
         arrival.iono_loss = ionosphere_absorption(atmosphere_, carrier_, there);
-    }
+    });
 }
 
 Decibels ionosphere_absorption(const AtmosphereParameters& atmosphere, Hertz carrier, Angle elevation_there) {
@@ -82,9 +79,9 @@ Decibels whole_path_loss(const WholePathParameters& p, Angle elevation) {
 }
 
 void WholePathLoss::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& /*truth*/) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i)
-        arrivals.satellites[i].gas_loss = whole_path_loss(parameters_, sky.satellites[i].elevation);
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        arrival.gas_loss = whole_path_loss(parameters_, satellite.elevation);
+    });
 }
 
 DecibelWatts received_power(const Arrival& arrival, const LinkBudgetParameters& link) {

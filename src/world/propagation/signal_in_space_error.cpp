@@ -1,7 +1,6 @@
 #include "world/propagation/signal_in_space_error.hpp"
 
 #include <Eigen/Geometry>
-#include <cassert>
 #include <cmath>
 
 #include "world/gnss/constants.hpp"
@@ -16,26 +15,6 @@ bool is_beidou_medium_orbit(int number) {
     // Geostationary and inclined geosynchronous: C01 to C10, C13, C16, C31, C38 to C40 and from C56 (but C57 and C58).
     return number > 10 && number != 13 && number != 16 && number != 31 && (number < 38 || number > 40) &&
            (number < 56 || number == 57 || number == 58);
-}
-
-Metres system_sisre(SatelliteId satellite, const SignalInSpaceParameters& p) {
-    switch (satellite.constellation) {
-        case Constellation::sbas:
-            return p.sbas;
-        case Constellation::galileo:
-            return p.galileo;
-        case Constellation::beidou:
-            return satellite.number <= 18 ? p.beidou2 : p.beidou3;
-        case Constellation::qzss:
-            return p.qzss;
-        case Constellation::glonass:
-            return p.glonass;
-        case Constellation::navic:
-            return p.navic;
-        case Constellation::gps:
-            break;
-    }
-    return p.gps;
 }
 
 // Shares of the radial, along-track and cross-track error in the range, and how they change per second.
@@ -96,7 +75,7 @@ Metres sisre(const OrbitClockSigmas& s, const SisreWeights& w) {
 
 OrbitClockSigmas orbit_clock_sigmas(SatelliteId satellite, const SignalInSpaceParameters& parameters) {
     const double factor =
-        system_sisre(satellite, parameters).value() / sisre(typical_sigmas, sisre_weights(satellite)).value();
+        of_system(parameters, satellite).value() / sisre(typical_sigmas, sisre_weights(satellite)).value();
     return {typical_sigmas.radial * factor, typical_sigmas.along * factor, typical_sigmas.cross * factor,
             typical_sigmas.clock * factor};
 }
@@ -112,24 +91,22 @@ SignalInSpaceError::Parts SignalInSpaceError::parts_of(SatelliteId satellite) co
 }
 
 void SignalInSpaceError::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     const double factor = term_.factor();
     if (factor == 0) return;
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        Parts& parts = parts_.of(sky.satellites[i].id, [this](SatelliteId id) { return parts_of(id); });
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        Parts& parts = parts_.of(satellite.id, [this](SatelliteId id) { return parts_of(id); });
         const Eigen::Vector3d orbit(parts.radial.at(truth.time), parts.along.at(truth.time),
                                     parts.cross.at(truth.time));
         const Eigen::Vector3d orbit_rate(parts.radial.rate(), parts.along.rate(), parts.cross.rate());
         const double clock = parts.clock.at(truth.time);
-        const auto [share, share_rate] = line_of_sight_shares(sky.satellites[i], truth);
-        Arrival& arrival = arrivals.satellites[i];
+        const auto [share, share_rate] = line_of_sight_shares(satellite, truth);
         // Not scaled: it is what joins the records.
-        arrival.earlier_records = sky.satellites[i].earlier_records;
+        arrival.earlier_records = satellite.earlier_records;
         arrival.signal_in_space_error = Metres(factor * (share.dot(orbit) - clock)) + arrival.earlier_records.range;
         arrival.range_rate_error =
             MetresPerSecond(factor * (share.dot(orbit_rate) + share_rate.dot(orbit) - parts.clock.rate())) +
             arrival.earlier_records.range_rate;
-    }
+    });
 }
 
 }  // namespace skyloop::inline world

@@ -1,7 +1,6 @@
 #include "world/propagation/troposphere_delay.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -108,7 +107,6 @@ TroposphereDelay::TroposphereDelay(const ModernPropagationParameters& parameters
                                  parameters.troposphere_residual.stream(seed, "troposphere_residual.walk"))) {}
 
 void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    assert(arrivals.satellites.size() == sky.satellites.size());
     if (factor_ == 0 && residual_factor_ == 0) return;
     const UtcTime utc = to_utc(truth.time, site_.leap_seconds);
     const AnnualPhase phase = AnnualPhase::of(utc);
@@ -120,9 +118,9 @@ void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const Truth
     if (residual_factor_ != 0)
         zenith.wet += Metres(residual_factor_ * vapour_above(height) * (wander_.at(truth.time) + walk_.at(truth.time)));
     const EpochMapping mapping = epoch_mapping(parameters_, truth.geodetic, height, utc);
-    for (std::size_t i = 0; i < sky.satellites.size(); ++i) {
-        const SkyDirection direction{sky.satellites[i].azimuth, std::max(sky.satellites[i].elevation, Angle())};
-        Metres& delay = arrivals.satellites[i].tropo_delay;
+    for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        const SkyDirection direction{satellite.azimuth, std::max(satellite.elevation, Angle())};
+        Metres& delay = arrival.tropo_delay;
         if (parameters_.mapping == TroposphereMappingModel::cosecant) {
             // The very numbers of saastamoinen_delay(), bit by bit.
             delay = zenith.total() / std::sin(above_horizon(direction.elevation).rad());
@@ -131,7 +129,7 @@ void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const Truth
             delay = zenith.hydrostatic * m.hydrostatic + zenith.wet * m.wet;
         }
         if (factor_ != 0) delay += Metres(factor_ * gradient_delay(parameters_, direction));
-    }
+    });
 }
 
 }  // namespace skyloop::inline world
