@@ -112,7 +112,6 @@ public:
 
     /// What is wrong from now on; bytes that left by now have been given before.
     void set(const WireConditions& conditions, GpsTime now);
-    [[nodiscard]] const WireConditions& conditions() const { return conditions_; }
     /// What comes out towards the client by `now` when the receiver has sent these pieces of one port.
     std::vector<firmware::Receiver::Sent> to_client(std::vector<firmware::Receiver::Sent> sent, GpsTime now);
     /// What comes out towards the receiver by `now` when these bytes have entered.

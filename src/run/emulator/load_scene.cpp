@@ -175,15 +175,7 @@ Result<void> check_places(const SceneEntry& entry, const JoinedCity& city) {
 
 // Of the opposite hand, by the antenna of the preset: a telephone's is polarised linearly and hears both alike.
 Decibels hand_rejection(ModernPreset preset) {
-    switch (preset) {
-        case ModernPreset::survey:
-            return Decibels(20);
-        case ModernPreset::phone:
-            return Decibels(0);
-        case ModernPreset::consumer:
-            break;
-    }
-    return Decibels(10);
+    return Decibels(preset == ModernPreset::survey ? 20 : preset == ModernPreset::phone ? 0 : 10);
 }
 
 }  // namespace

@@ -98,7 +98,6 @@ void LatenessHistogram::add(Nanoseconds lateness) {
     const auto bin = std::upper_bound(bounds_ms.begin(), bounds_ms.end(), ms) - bounds_ms.begin();
     ++counts_[static_cast<std::size_t>(bin)];
     largest_ = std::max(largest_, lateness);
-    latest_ = lateness;
     ++epochs_;
     sum_ms_ += ms;
 }

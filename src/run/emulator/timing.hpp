@@ -124,14 +124,12 @@ public:
     void add(Nanoseconds lateness);
     [[nodiscard]] const std::array<std::uint64_t, bounds_ms.size() + 1>& counts() const { return counts_; }
     [[nodiscard]] Nanoseconds largest() const { return largest_; }
-    [[nodiscard]] Nanoseconds latest() const { return latest_; }
     /// Mean over all epochs, ms.
     [[nodiscard]] double mean_ms() const;
 
 private:
     std::array<std::uint64_t, bounds_ms.size() + 1> counts_{};
     Nanoseconds largest_{0};
-    Nanoseconds latest_{0};
     std::uint64_t epochs_ = 0;
     double sum_ms_ = 0;
 };

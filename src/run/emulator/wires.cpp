@@ -33,10 +33,13 @@ std::size_t end_of_name(std::string_view text) {
                : std::string_view::npos;
 }
 
-bool leads_to_client(const std::string& wire) {
+// Without the name of its port.
+std::string uri_of(const std::string& wire) {
     const std::size_t name = end_of_name(wire);
-    return client_of_uri(name == std::string_view::npos ? wire : wire.substr(name + 1)).has_value();
+    return name == std::string::npos ? wire : wire.substr(name + 1);
 }
+
+bool leads_to_client(const std::string& wire) { return client_of_uri(uri_of(wire)).has_value(); }
 
 // Devices such as /dev/null may be written to by all.
 std::string place_of_file(const std::string& path) {
@@ -157,11 +160,8 @@ Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const Boar
 }
 
 std::optional<std::uint32_t> speed_of_wires(const ReceiverEntry& entry) {
-    for (const std::string& text : entry.ports) {
-        const std::size_t name = end_of_name(text);
-        const auto uri = parse_port_uri(name == std::string::npos ? text : text.substr(name + 1));
-        if (uri && uri->baud) return uri->baud;
-    }
+    for (const std::string& wire : entry.ports)
+        if (const auto uri = parse_port_uri(uri_of(wire)); uri && uri->baud) return uri->baud;
     return std::nullopt;
 }
 
