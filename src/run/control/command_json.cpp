@@ -160,12 +160,8 @@ Json schema_of(const ParameterSpec& spec) {
 
 namespace {
 
-template <class Kind>
-Json parameters_json(const Kind& kind) {
-    Json list = Json::array();
-    for (const ParameterSpec& spec : kind.parameters)
-        list.push_back(to_json(spec));
-    return list;
+Json parameters_json(const ParameterList& parameters) {
+    return json_list(parameters, [](const ParameterSpec& spec) { return to_json(spec); });
 }
 
 }  // namespace
@@ -193,26 +189,24 @@ std::string command_json(const Command& command) {
 }
 
 std::string fault_kinds_json() {
-    Json list = Json::array();
-    for (const FaultKind& kind : fault_kinds())
-        list.push_back({{"name", kind.name},
-                        {"layer", fault_layer_names[static_cast<std::size_t>(kind.layer)]},
-                        {"effect", kind.effect},
-                        {"cause", kind.cause},
-                        {"measuring_receivers_only", kind.measuring_receivers_only},
-                        {"parameters", parameters_json(kind)}});
-    return json_text(list);
+    return json_text(json_list(fault_kinds(), [](const FaultKind& kind) -> Json {
+        return {{"name", kind.name},
+                {"layer", fault_layer_names[static_cast<std::size_t>(kind.layer)]},
+                {"effect", kind.effect},
+                {"cause", kind.cause},
+                {"measuring_receivers_only", kind.measuring_receivers_only},
+                {"parameters", parameters_json(kind.parameters)}};
+    }));
 }
 
 std::string command_kinds_json() {
-    Json list = Json::array();
-    for (const CommandKind& kind : command_kinds())
-        list.push_back({{"name", kind.name},
-                        {"meaning", kind.meaning},
-                        {"live_only", kind.live_only},
-                        {"of_receiver", kind.of_receiver},
-                        {"parameters", parameters_json(kind)}});
-    return json_text(list);
+    return json_text(json_list(command_kinds(), [](const CommandKind& kind) -> Json {
+        return {{"name", kind.name},
+                {"meaning", kind.meaning},
+                {"live_only", kind.live_only},
+                {"of_receiver", kind.of_receiver},
+                {"parameters", parameters_json(kind.parameters)}};
+    }));
 }
 
 }  // namespace skyloop::inline run

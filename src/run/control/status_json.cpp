@@ -96,11 +96,6 @@ Json error_json(const EnuError& error) {
 }
 
 Json receiver_json(const ReceiverStatus& receiver, GpsTime start) {
-    Json satellites = Json::array(), wires = Json::array();
-    for (const SatelliteSeen& satellite : receiver.satellites)
-        satellites.push_back(satellite_json(satellite));
-    for (const WireStatus& wire : receiver.wires)
-        wires.push_back(wire_json(wire));
     return {{"name", receiver.name},
             {"board", receiver.board},
             {"rate_hz", receiver.rate_hz},
@@ -114,8 +109,8 @@ Json receiver_json(const ReceiverStatus& receiver, GpsTime start) {
             {"spoofing", receiver.spoofing},
             {"interference_db", receiver.interference.value()},
             {"lateness_ms", static_cast<double>(receiver.lateness.count()) * 1e-6},
-            {"satellites", std::move(satellites)},
-            {"wires", std::move(wires)}};
+            {"satellites", json_list(receiver.satellites, satellite_json)},
+            {"wires", json_list(receiver.wires, wire_json)}};
 }
 
 Json bar_json(const TimelineBar& bar, GpsTime start) {
@@ -163,31 +158,21 @@ Json dialogue_json(const DialogueLine& line, GpsTime start) {
             {"text", message_text(line)}};
 }
 
-Json messages_json(const StatusSnapshot& snapshot) {
-    Json list = Json::array();
-    for (const MessageCount& message : snapshot.messages)
-        list.push_back({{"receiver", message.receiver},
-                        {"wire", message.wire},
-                        {"from", speaker(message.from_client)},
-                        {"protocol", stream_kind_name(message.kind)},
-                        {"name", message.name},
-                        {"count", message.count}});
-    return list;
+Json message_json(const MessageCount& message) {
+    return {{"receiver", message.receiver},
+            {"wire", message.wire},
+            {"from", speaker(message.from_client)},
+            {"protocol", stream_kind_name(message.kind)},
+            {"name", message.name},
+            {"count", message.count}};
 }
 
 Json bars_json(const StatusSnapshot& snapshot) {
-    Json list = Json::array();
-    for (const TimelineBar& bar : snapshot.timeline)
-        list.push_back(bar_json(bar, snapshot.start));
-    return list;
+    return json_list(snapshot.timeline, [&](const TimelineBar& bar) { return bar_json(bar, snapshot.start); });
 }
 
-Json verdicts_json(const StatusSnapshot& snapshot) {
-    Json list = Json::array();
-    for (const VerdictStatus& verdict : snapshot.verdicts)
-        list.push_back(
-            {{"name", verdict.name}, {"what", verdict.what}, {"state", verdict.state}, {"detail", verdict.detail}});
-    return list;
+Json verdict_status_json(const VerdictStatus& verdict) {
+    return {{"name", verdict.name}, {"what", verdict.what}, {"state", verdict.state}, {"detail", verdict.detail}};
 }
 
 template <class Line>
@@ -210,9 +195,7 @@ std::string status_json(const StatusSnapshot& snapshot, const SeenLines& seen) {
               {"paused", snapshot.pace.paused},
               {"speed", snapshot.pace.speed},
               {"virtual_time", snapshot.pace.virtual_time}};
-    Json receivers = Json::array(), dialogue = Json::array(), events = Json::array();
-    for (const ReceiverStatus& receiver : snapshot.receivers)
-        receivers.push_back(receiver_json(receiver, snapshot.start));
+    Json dialogue = Json::array(), events = Json::array();
     for (const auto& line : snapshot.dialogue)
         if (line->sequence > seen.dialogue) dialogue.push_back(dialogue_json(*line, snapshot.start));
     for (const auto& line : snapshot.events)
@@ -221,12 +204,13 @@ std::string status_json(const StatusSnapshot& snapshot, const SeenLines& seen) {
                               {"t_s", difference(line->time, snapshot.start).value()},
                               {"what", line->what},
                               {"text", line->text}});
-    json["receivers"] = std::move(receivers);
+    json["receivers"] = json_list(
+        snapshot.receivers, [&](const ReceiverStatus& receiver) { return receiver_json(receiver, snapshot.start); });
     json["timeline"] = bars_json(snapshot);
-    json["verdicts"] = verdicts_json(snapshot);
+    json["verdicts"] = json_list(snapshot.verdicts, verdict_status_json);
     json["events"] = std::move(events);
     json["dialogue"] = std::move(dialogue);
-    json["messages"] = messages_json(snapshot);
+    json["messages"] = json_list(snapshot.messages, message_json);
     return json_text(json);
 }
 

@@ -13,6 +13,15 @@
 
 namespace skyloop::inline run {
 
+/// The list of what `make` makes of each item.
+template <class Items, class Make>
+Json json_list(const Items& items, const Make& make) {
+    Json list = Json::array();
+    for (const auto& item : items)
+        list.push_back(make(item));
+    return list;
+}
+
 /// The members of the one object that `text` is. Fails with `input` for anything else, for members that stand there
 /// twice, and for values that no parameter takes.
 Result<ParameterMap> parameters_from_json(std::string_view text);
