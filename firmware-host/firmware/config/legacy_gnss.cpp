@@ -169,16 +169,11 @@ constexpr BitKey sbas_mode[] = {{0, legacy_key::sbas_enabled}, {1, legacy_key::s
 constexpr std::uint64_t scan_mask_2 = 0x7F;  // PRN 152 … 158
 constexpr unsigned scan_shift = 32;
 
-CfgSbas describe_sbas(const LegacyContext& context) {
-    const std::uint64_t scan = context.store.value(legacy_key::sbas_scan_mask);
-    CfgSbas message;
-    message.mode = static_cast<std::uint8_t>(bits_in_force(context, sbas_mode));
-    message.usage = static_cast<std::uint8_t>(bits_in_force(context, sbas_usage));
-    message.max_sbas = in_force<std::uint8_t>(context, legacy_key::max_sbas);
-    message.scan_mode2 = static_cast<std::uint8_t>(scan >> scan_shift & scan_mask_2);
-    message.scan_mode1 = static_cast<std::uint32_t>(scan & 0xFFFF'FFFF);
-    return message;
-}
+constexpr auto link_sbas = [](auto& m, auto& v) {
+    v.link(sbas_mode, m.mode);
+    v.link(sbas_usage, m.usage);
+    v.link(legacy_key::max_sbas, m.max_sbas);
+};
 
 }  // namespace
 
@@ -201,13 +196,17 @@ ConfigOutcome legacy_gnss(const LegacyContext& context, ByteSpan payload) {
 }
 
 ConfigOutcome legacy_sbas(const LegacyContext& context, ByteSpan payload) {
-    if (payload.empty()) return legacy_answered(describe_sbas(context));
+    if (payload.empty()) {
+        const std::uint64_t scan = context.store.value(legacy_key::sbas_scan_mask);
+        return legacy_poll(context,
+                           CfgSbas{.scan_mode2 = static_cast<std::uint8_t>(scan >> scan_shift & scan_mask_2),
+                                   .scan_mode1 = static_cast<std::uint32_t>(scan & 0xFFFF'FFFF)},
+                           link_sbas);
+    }
     const auto set = decode_payload<CfgSbas>(payload);
     if (!set) return legacy_refused();
     LegacyChanges changes(context);
-    changes.put_bits(sbas_mode, set->mode);
-    changes.put_bits(sbas_usage, set->usage);
-    changes.put(legacy_key::max_sbas, set->max_sbas);
+    link_sbas(*set, changes);
     changes.put(legacy_key::sbas_scan_mask,
                 std::uint64_t{set->scan_mode2 & scan_mask_2} << scan_shift | set->scan_mode1);
     const bool restarts = context.store.flag(legacy_key::sbas_enabled) != ((set->mode & 1) != 0);

@@ -161,6 +161,14 @@ constexpr unsigned pin_mask = 0x1F, short_pin_shift = 5, open_pin_shift = 10, re
 constexpr BitKey log_flags[] = {
     {0, legacy_key::log_record}, {1, legacy_key::log_once_per_wake_up}, {2, legacy_key::log_all_filters}};
 
+constexpr auto link_logfilter = [](auto& m, auto& v) {
+    v.link(log_flags, m.flags);
+    v.link(legacy_key::log_min_interval, m.min_interval);
+    v.link(legacy_key::log_time, m.time_threshold);
+    v.link(legacy_key::log_speed, m.speed_threshold);
+    v.link(legacy_key::log_position, m.position_threshold);
+};
+
 }  // namespace
 
 ConfigOutcome legacy_tp5(const LegacyContext& context, ByteSpan payload) {
@@ -255,24 +263,9 @@ ConfigOutcome legacy_ant(const LegacyContext& context, ByteSpan payload) {
 }
 
 ConfigOutcome legacy_logfilter(const LegacyContext& context, ByteSpan payload) {
-    if (payload.empty()) {
-        CfgLogfilter answer;
-        answer.flags = static_cast<std::uint8_t>(bits_in_force(context, log_flags));
-        answer.min_interval = in_force<std::uint16_t>(context, legacy_key::log_min_interval);
-        answer.time_threshold = in_force<std::uint16_t>(context, legacy_key::log_time);
-        answer.speed_threshold = in_force<std::uint16_t>(context, legacy_key::log_speed);
-        answer.position_threshold = in_force<std::uint32_t>(context, legacy_key::log_position);
-        return legacy_answered(answer);
-    }
+    if (payload.empty()) return legacy_poll(context, CfgLogfilter{}, link_logfilter);
     const auto set = decode_payload<CfgLogfilter>(payload);
-    if (!set || set->version != 1) return legacy_refused();
-    LegacyChanges changes(context);
-    changes.put_bits(log_flags, set->flags);
-    changes.put(legacy_key::log_min_interval, set->min_interval);
-    changes.put(legacy_key::log_time, set->time_threshold);
-    changes.put(legacy_key::log_speed, set->speed_threshold);
-    changes.put(legacy_key::log_position, set->position_threshold);
-    return changes.apply();
+    return set && set->version == 1 ? legacy_set(context, *set, link_logfilter) : legacy_refused();
 }
 
 }  // namespace skyloop::firmware

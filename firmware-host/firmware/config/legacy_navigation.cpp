@@ -13,58 +13,36 @@
 namespace skyloop::firmware {
 namespace {
 
-CfgNav5 describe_nav5(const LegacyContext& context) {
-    CfgNav5 message;
-    message.mask = 0xFFFF;
-    message.dyn_model = in_force<std::uint8_t>(context, key::navspg_dynmodel);
-    message.fix_mode = in_force<std::uint8_t>(context, key::navspg_fixmode);
-    message.fixed_alt = in_force<std::int32_t>(context, key::navspg_constr_alt);
-    message.fixed_alt_var = in_force<std::uint32_t>(context, key::navspg_constr_altvar);
-    message.min_elev = in_force<std::int8_t>(context, key::navspg_min_elev);
-    message.dr_limit = in_force<std::uint8_t>(context, legacy_key::dr_limit);
-    message.p_dop = in_force<std::uint16_t>(context, key::navspg_pdop);
-    message.t_dop = in_force<std::uint16_t>(context, key::navspg_tdop);
-    message.p_acc = in_force<std::uint16_t>(context, key::navspg_pacc);
-    message.t_acc = in_force<std::uint16_t>(context, key::navspg_tacc);
-    message.static_hold_thresh = in_force<std::uint8_t>(context, key::mot_speed_threshold);
-    message.dgnss_timeout = in_force<std::uint8_t>(context, key::navspg_dgnss_timeout);
-    message.cno_thresh_num_svs = in_force<std::uint8_t>(context, key::navspg_cno_count);
-    message.cno_thresh = in_force<std::uint8_t>(context, key::navspg_cno_threshold);
-    message.static_hold_max_dist = in_force<std::uint16_t>(context, key::mot_distance_threshold);
-    message.utc_standard = in_force<std::uint8_t>(context, key::navspg_utcstandard);
-    return message;
-}
-
-/// The groups that CFG-NAV5's mask names (M8 interface description 32.11.17).
-void put_nav5(LegacyChanges& changes, const CfgNav5& message) {
-    const auto masked = [&](unsigned bit) { return (message.mask >> bit & 1) != 0; };
-    if (masked(0)) changes.put(key::navspg_dynmodel, message.dyn_model);
-    if (masked(1)) changes.put(key::navspg_min_elev, message.min_elev);
+/// The groups that CFG-NAV5's mask names (M8 interface description 32.11.17); a poll shows them all.
+constexpr auto link_nav5 = [](auto& m, auto& v) {
+    const auto masked = [&](unsigned bit) { return (m.mask >> bit & 1) != 0; };
+    if (masked(0)) v.link(key::navspg_dynmodel, m.dyn_model);
+    if (masked(1)) v.link(key::navspg_min_elev, m.min_elev);
     if (masked(2)) {
-        changes.put(key::navspg_fixmode, message.fix_mode);
-        changes.put(key::navspg_constr_alt, message.fixed_alt);
-        changes.put(key::navspg_constr_altvar, message.fixed_alt_var);
+        v.link(key::navspg_fixmode, m.fix_mode);
+        v.link(key::navspg_constr_alt, m.fixed_alt);
+        v.link(key::navspg_constr_altvar, m.fixed_alt_var);
     }
-    if (masked(3)) changes.put(legacy_key::dr_limit, message.dr_limit);
+    if (masked(3)) v.link(legacy_key::dr_limit, m.dr_limit);
     if (masked(4)) {
-        changes.put(key::navspg_pdop, message.p_dop);
-        changes.put(key::navspg_pacc, message.p_acc);
+        v.link(key::navspg_pdop, m.p_dop);
+        v.link(key::navspg_pacc, m.p_acc);
     }
     if (masked(5)) {
-        changes.put(key::navspg_tdop, message.t_dop);
-        changes.put(key::navspg_tacc, message.t_acc);
+        v.link(key::navspg_tdop, m.t_dop);
+        v.link(key::navspg_tacc, m.t_acc);
     }
     if (masked(6)) {
-        changes.put(key::mot_speed_threshold, message.static_hold_thresh);
-        changes.put(key::mot_distance_threshold, message.static_hold_max_dist);
+        v.link(key::mot_speed_threshold, m.static_hold_thresh);
+        v.link(key::mot_distance_threshold, m.static_hold_max_dist);
     }
-    if (masked(7)) changes.put(key::navspg_dgnss_timeout, message.dgnss_timeout);
+    if (masked(7)) v.link(key::navspg_dgnss_timeout, m.dgnss_timeout);
     if (masked(8)) {
-        changes.put(key::navspg_cno_count, message.cno_thresh_num_svs);
-        changes.put(key::navspg_cno_threshold, message.cno_thresh);
+        v.link(key::navspg_cno_count, m.cno_thresh_num_svs);
+        v.link(key::navspg_cno_threshold, m.cno_thresh);
     }
-    if (masked(10)) changes.put(key::navspg_utcstandard, message.utc_standard);
-}
+    if (masked(10)) v.link(key::navspg_utcstandard, m.utc_standard);
+};
 
 /// 2 from protocol version 18 on, 0 before (RECEIVER.md 3.3).
 std::uint16_t navx5_version(const BoardProfile& board) {
@@ -115,23 +93,35 @@ constexpr BitKey odo_flags[] = {{0, legacy_key::odo_use},
                                 {1, legacy_key::odo_use_cog},
                                 {2, legacy_key::odo_out_lp_vel},
                                 {3, legacy_key::odo_out_lp_cog}};
+constexpr auto link_odo = [](auto& m, auto& v) {
+    v.link(odo_flags, m.flags);
+    v.link(legacy_key::odo_cog_max_speed, m.cog_max_speed);
+    v.link(legacy_key::odo_cog_max_pos_acc, m.cog_max_pos_acc);
+    v.link(legacy_key::odo_vel_lp_gain, m.vel_lp_gain);
+    v.link(legacy_key::odo_cog_lp_gain, m.cog_lp_gain);
+};
+
+constexpr auto link_dgnss = [](auto& m, auto& v) { v.link(key::navhpg_dgnssmode, m.dgnss_mode); };
+
 constexpr unsigned geodetic_bit = 8;
 
-CfgTmode3 describe_tmode3(const LegacyContext& context) {
-    CfgTmode3 message;
-    const bool geodetic = context.store.flag(legacy_key::tmode_pos_type);
-    message.flags =
-        static_cast<std::uint16_t>(in_force<unsigned>(context, key::tmode_mode) | (geodetic ? 1u : 0u) << geodetic_bit);
+/// What the flags do not hold; they say which of the two kinds of items the position is.
+constexpr auto link_tmode3 = [](auto& m, auto& v) {
+    const bool geodetic = (m.flags >> geodetic_bit & 1) != 0;
     const std::uint32_t first = geodetic ? legacy_key::tmode_geodetic : legacy_key::tmode_ecef;
     const std::uint32_t first_hp = geodetic ? legacy_key::tmode_geodetic_hp : legacy_key::tmode_ecef_hp;
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-        message.position[axis] = in_force<std::int32_t>(context, first + axis);
-        message.position_hp[axis] = in_force<std::int8_t>(context, first_hp + axis);
+        v.link(first + axis, m.position[axis]);
+        v.link(first_hp + axis, m.position_hp[axis]);
     }
-    message.fixed_pos_acc = in_force<std::uint32_t>(context, legacy_key::tmode_fixed_pos_acc);
-    message.svin_min_dur = in_force<std::uint32_t>(context, legacy_key::tmode_svin_min_dur);
-    message.svin_acc_limit = in_force<std::uint32_t>(context, legacy_key::tmode_svin_acc_limit);
-    return message;
+    v.link(legacy_key::tmode_fixed_pos_acc, m.fixed_pos_acc);
+    v.link(legacy_key::tmode_svin_min_dur, m.svin_min_dur);
+    v.link(legacy_key::tmode_svin_acc_limit, m.svin_acc_limit);
+};
+
+std::uint16_t tmode3_flags(const LegacyContext& context) {
+    const unsigned geodetic = context.store.flag(legacy_key::tmode_pos_type) ? 1 : 0;
+    return static_cast<std::uint16_t>(in_force<unsigned>(context, key::tmode_mode) | geodetic << geodetic_bit);
 }
 
 /// The high-precision part is less than one unit of the coarse one (F9 interface description, CFG-TMODE-ECEF_X_HP).
@@ -156,12 +146,9 @@ ConfigOutcome legacy_rate(const LegacyContext& context, ByteSpan payload) {
 }
 
 ConfigOutcome legacy_nav5(const LegacyContext& context, ByteSpan payload) {
-    if (payload.empty()) return legacy_answered(describe_nav5(context));
+    if (payload.empty()) return legacy_poll(context, CfgNav5{.mask = 0xFFFF}, link_nav5);
     const auto set = decode_payload<CfgNav5>(payload);
-    if (!set) return legacy_refused();
-    LegacyChanges changes(context);
-    put_nav5(changes, *set);
-    return changes.apply();
+    return set ? legacy_set(context, *set, link_nav5) : legacy_refused();
 }
 
 ConfigOutcome legacy_navx5(const LegacyContext& context, ByteSpan payload) {
@@ -174,54 +161,31 @@ ConfigOutcome legacy_navx5(const LegacyContext& context, ByteSpan payload) {
 }
 
 ConfigOutcome legacy_odo(const LegacyContext& context, ByteSpan payload) {
-    if (payload.empty()) {
-        CfgOdo answer;
-        answer.flags = static_cast<std::uint8_t>(bits_in_force(context, odo_flags));
-        answer.odo_cfg = in_force<std::uint8_t>(context, legacy_key::odo_profile);
-        answer.cog_max_speed = in_force<std::uint8_t>(context, legacy_key::odo_cog_max_speed);
-        answer.cog_max_pos_acc = in_force<std::uint8_t>(context, legacy_key::odo_cog_max_pos_acc);
-        answer.vel_lp_gain = in_force<std::uint8_t>(context, legacy_key::odo_vel_lp_gain);
-        answer.cog_lp_gain = in_force<std::uint8_t>(context, legacy_key::odo_cog_lp_gain);
-        return legacy_answered(answer);
-    }
+    if (payload.empty())
+        return legacy_poll(context, CfgOdo{.odo_cfg = in_force<std::uint8_t>(context, legacy_key::odo_profile)},
+                           link_odo);
     const auto set = decode_payload<CfgOdo>(payload);
     if (!set || set->version != 0) return legacy_refused();
     LegacyChanges changes(context);
-    changes.put_bits(odo_flags, set->flags);
+    link_odo(*set, changes);
     changes.put(legacy_key::odo_profile, static_cast<std::uint8_t>(set->odo_cfg & 7));
-    changes.put(legacy_key::odo_cog_max_speed, set->cog_max_speed);
-    changes.put(legacy_key::odo_cog_max_pos_acc, set->cog_max_pos_acc);
-    changes.put(legacy_key::odo_vel_lp_gain, set->vel_lp_gain);
-    changes.put(legacy_key::odo_cog_lp_gain, set->cog_lp_gain);
     return changes.apply();
 }
 
 ConfigOutcome legacy_dgnss(const LegacyContext& context, ByteSpan payload) {
-    if (payload.empty()) return legacy_answered(CfgDgnss{in_force<std::uint8_t>(context, key::navhpg_dgnssmode), {}});
+    if (payload.empty()) return legacy_poll(context, CfgDgnss{}, link_dgnss);
     const auto set = decode_payload<CfgDgnss>(payload);
-    if (!set) return legacy_refused();
-    LegacyChanges changes(context);
-    changes.put(key::navhpg_dgnssmode, set->dgnss_mode);
-    return changes.apply();
+    return set ? legacy_set(context, *set, link_dgnss) : legacy_refused();
 }
 
 ConfigOutcome legacy_tmode3(const LegacyContext& context, ByteSpan payload) {
-    if (payload.empty()) return legacy_answered(describe_tmode3(context));
+    if (payload.empty()) return legacy_poll(context, CfgTmode3{.flags = tmode3_flags(context)}, link_tmode3);
     const auto set = decode_payload<CfgTmode3>(payload);
     if (!set || set->version != 0 || !std::ranges::all_of(set->position_hp, is_fraction)) return legacy_refused();
     LegacyChanges changes(context);
-    const bool geodetic = (set->flags >> geodetic_bit & 1) != 0;
     changes.put(key::tmode_mode, static_cast<std::uint8_t>(set->flags & 0xFF));
-    changes.put(legacy_key::tmode_pos_type, static_cast<std::uint8_t>(geodetic));
-    const std::uint32_t first = geodetic ? legacy_key::tmode_geodetic : legacy_key::tmode_ecef;
-    const std::uint32_t first_hp = geodetic ? legacy_key::tmode_geodetic_hp : legacy_key::tmode_ecef_hp;
-    for (std::uint32_t axis = 0; axis < 3; ++axis) {
-        changes.put(first + axis, set->position[axis]);
-        changes.put(first_hp + axis, set->position_hp[axis]);
-    }
-    changes.put(legacy_key::tmode_fixed_pos_acc, set->fixed_pos_acc);
-    changes.put(legacy_key::tmode_svin_min_dur, set->svin_min_dur);
-    changes.put(legacy_key::tmode_svin_acc_limit, set->svin_acc_limit);
+    changes.put(legacy_key::tmode_pos_type, static_cast<std::uint8_t>(set->flags >> geodetic_bit & 1));
+    link_tmode3(*set, changes);
     return changes.apply();
 }
 

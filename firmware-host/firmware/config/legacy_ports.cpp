@@ -273,13 +273,17 @@ CfgNmeaCore describe_core(const LegacyContext& context) {
     return core;
 }
 
+constexpr auto link_extension = [](auto& m, auto& v) {
+    v.link(nmea_gnss_filter, m.gnss_to_filter);
+    v.link(key::nmea_svnumbering, m.sv_numbering);
+    v.link(key::nmea_main_talker, m.main_talker_id);
+    v.link(key::nmea_gsv_talker, m.gsv_talker_id);
+};
+
 CfgNmeaExtension describe_extension(const LegacyContext& context, std::uint8_t version) {
-    CfgNmeaExtension extension;
-    extension.gnss_to_filter = bits_in_force(context, nmea_gnss_filter);
-    extension.sv_numbering = in_force<std::uint8_t>(context, key::nmea_svnumbering);
-    extension.main_talker_id = in_force<std::uint8_t>(context, key::nmea_main_talker);
-    extension.gsv_talker_id = in_force<std::uint8_t>(context, key::nmea_gsv_talker);
-    extension.version = version;
+    CfgNmeaExtension extension{.version = version};
+    LegacyFields fields(context);
+    link_extension(extension, fields);
     return extension;
 }
 
@@ -307,13 +311,6 @@ bool put_core(LegacyChanges& changes, const CfgNmeaCore& core) {
     return true;
 }
 
-void put_extension(LegacyChanges& changes, const CfgNmeaExtension& extension) {
-    changes.put_bits(nmea_gnss_filter, extension.gnss_to_filter);
-    changes.put(key::nmea_svnumbering, extension.sv_numbering);
-    changes.put(key::nmea_main_talker, extension.main_talker_id);
-    changes.put(key::nmea_gsv_talker, extension.gsv_talker_id);
-}
-
 }  // namespace
 
 ConfigOutcome legacy_nmea(const LegacyContext& context, ByteSpan payload) {
@@ -325,12 +322,12 @@ ConfigOutcome legacy_nmea(const LegacyContext& context, ByteSpan payload) {
     }
     if (const auto v0 = decode_payload<CfgNmeaV0>(payload); v0 && generation >= 7 && v0->extension.version == 0) {
         if (!put_core(changes, v0->core)) return legacy_refused();
-        put_extension(changes, v0->extension);
+        link_extension(v0->extension, changes);
         return changes.apply();
     }
     const auto v1 = decode_payload<CfgNmea>(payload);
     if (!v1 || generation < 8 || v1->extension.version != 1 || !put_core(changes, v1->core)) return legacy_refused();
-    put_extension(changes, v1->extension);
+    link_extension(v1->extension, changes);
     changes.put(key::nmea_bds_talker, static_cast<std::uint16_t>(v1->bds_talker_id[0] | v1->bds_talker_id[1] << 8));
     return changes.apply();
 }

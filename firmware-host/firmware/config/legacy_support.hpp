@@ -41,6 +41,12 @@ public:
             put_raw(key, static_cast<std::make_unsigned_t<T>>(value));
     }
     void put_bits(std::span<const BitKey> keys, std::uint32_t bits);
+    /// These two under the names that LegacyFields has as well.
+    template <std::integral T>
+    void link(std::uint32_t key, const T& field) {
+        put(key, field);
+    }
+    void link(std::span<const BitKey> keys, std::uint32_t bits) { put_bits(keys, bits); }
     /// RAM as it would be.
     [[nodiscard]] ConfigValues result() const;
     /// Refuses, and changes nothing, when a value is out of range or the whole would not be consistent.
@@ -70,6 +76,38 @@ T in_force(const LegacyContext& context, std::uint32_t key) {
     return static_cast<T>(context.store.value(key));
 }
 std::uint32_t bits_in_force(const LegacyContext& context, std::span<const BitKey> keys);
+/// What a poll shows: link() brings what is in force into a field. A link_… function says with it, and with
+/// LegacyChanges for a setting, which field of a message is which item.
+class LegacyFields {
+public:
+    explicit LegacyFields(const LegacyContext& context) : context_(context) {}
+    template <std::integral T>
+    void link(std::uint32_t key, T& field) {
+        field = in_force<T>(context_, key);
+    }
+    template <std::unsigned_integral T>
+    void link(std::span<const BitKey> keys, T& field) {
+        field = static_cast<T>(bits_in_force(context_, keys));
+    }
+
+private:
+    const LegacyContext& context_;
+};
+/// The answer to a poll. @param message what its fields hold that are no items @param link of its other fields
+template <class Message, class Link>
+ConfigOutcome legacy_poll(const LegacyContext& context, Message message, Link link) {
+    LegacyFields fields(context);
+    link(message, fields);
+    return legacy_answered(message);
+}
+/// Takes a setting all of whose fields are linked.
+template <class Message, class Link>
+ConfigOutcome legacy_set(const LegacyContext& context, const Message& message, Link link) {
+    LegacyChanges changes(context);
+    link(message, changes);
+    return changes.apply();
+}
+
 /// Whether the configuration is locked (CFG-SEC-CFG_LOCK).
 bool is_locked(const LegacyContext& context);
 /// Whether the board has the port.
