@@ -112,7 +112,7 @@ bool set_systems(const BoardProfile& board, ConfigStore& store, ConfigLayers lay
 namespace {
 
 bool pubx_port_exists(const BoardProfile& board, PortId port) {
-    return std::find(board.ports.begin(), board.ports.end(), port) != board.ports.end();
+    return std::ranges::find(board.ports, port) != board.ports.end();
 }
 
 // Whether the board can send the message; one that lists nothing can send all.
@@ -185,7 +185,7 @@ std::vector<UbxMessageId> asked_by_pubx(const SentenceView& sentence) {
 bool is_standard_poll(const SentenceView& sentence) {
     constexpr std::string_view formatters[] = {"GPQ", "GNQ", "GLQ", "GBQ", "GAQ", "GQQ"};
     return sentence.address.size() == 5 && !sentence.address.starts_with('P') &&
-           std::find(std::begin(formatters), std::end(formatters), sentence.formatter()) != std::end(formatters);
+           std::ranges::find(formatters, sentence.formatter()) != std::end(formatters);
 }
 
 // What M8 says to a maker's sentence that it does not know: a warning.

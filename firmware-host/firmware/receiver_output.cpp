@@ -111,8 +111,7 @@ void Receiver::Core::reply(PortUnit& unit, Reply out, GpsTime now) {
 }
 
 bool Receiver::Core::configured_speeds_hold() const {
-    return std::all_of(units_.begin(), units_.end(),
-                       [&](const PortUnit& u) { return wanted_baud(u.id) == u.configured_baud; });
+    return std::ranges::all_of(units_, [&](const PortUnit& u) { return wanted_baud(u.id) == u.configured_baud; });
 }
 
 void Receiver::Core::plan_speed_changes(GpsTime at) {

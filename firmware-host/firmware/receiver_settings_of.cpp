@@ -16,9 +16,8 @@ bool signals_changed(const ConfigStore& store) {
     const auto changed = [&](std::uint32_t id) {
         return store.has(id) && store.stored(ConfigLayer::factory, id) != store.value(id);
     };
-    return std::any_of(system_keys_of_signals.begin(), system_keys_of_signals.end(),
-                       [&](const auto& s) { return changed(s.enable); }) ||
-           std::any_of(signal_keys.begin(), signal_keys.end(), [&](const auto& s) { return changed(s.enable); });
+    return std::ranges::any_of(system_keys_of_signals, [&](const auto& s) { return changed(s.enable); }) ||
+           std::ranges::any_of(signal_keys, [&](const auto& s) { return changed(s.enable); });
 }
 
 bool is_changed(const ConfigStore& store, std::uint32_t id) {
@@ -30,8 +29,8 @@ bool is_changed(const ConfigStore& store, std::uint32_t id) {
 std::set<SystemSignal> chosen_signals(const ConfigStore& store, const std::set<SystemSignal>& scenario) {
     std::set<SystemSignal> chosen = enabled_signals(store);
     const auto has_item = [&](const SystemSignal& signal) {
-        return std::any_of(signal_keys.begin(), signal_keys.end(),
-                           [&](const SignalKey& s) { return s.signal == signal && store.has(s.enable); });
+        return std::ranges::any_of(signal_keys,
+                                   [&](const SignalKey& s) { return s.signal == signal && store.has(s.enable); });
     };
     for (const SystemSignal& signal : scenario)
         if (!has_item(signal) && is_enabled(store, signal.constellation)) chosen.insert(signal);
@@ -117,8 +116,7 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
     put(key::mot_speed_threshold, static_cast<std::uint64_t>(std::clamp(hold, 0.0, 255.0)));
     if (s.signals.empty()) return values;
     const auto on = [&](Constellation system) {
-        return std::any_of(s.signals.begin(), s.signals.end(),
-                           [&](const SystemSignal& t) { return t.constellation == system; });
+        return std::ranges::any_of(s.signals, [&](const SystemSignal& t) { return t.constellation == system; });
     };
     for (const SystemKeys& system : system_keys_of_signals)
         put(system.enable, on(system.constellation));

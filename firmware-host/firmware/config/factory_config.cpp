@@ -34,7 +34,7 @@ std::optional<PortId> port_of(const ConfigKey& key) {
 void erase_rates_of_missing_ports(const BoardProfile& board, ConfigValues& values) {
     for (const OutputMessage& message : output_messages())
         for (std::uint32_t port = 0; port < port_count; ++port)
-            if (std::find(board.ports.begin(), board.ports.end(), static_cast<PortId>(port)) == board.ports.end())
+            if (std::ranges::find(board.ports, static_cast<PortId>(port)) == board.ports.end())
                 values.erase(message.i2c_key + port);
 }
 
@@ -42,7 +42,7 @@ ConfigValues items_of_board(const BoardProfile& board) {
     ConfigValues values;
     for (const ConfigKey& key : config_keys()) {
         const auto port = port_of(key);
-        const bool missing = port && std::find(board.ports.begin(), board.ports.end(), *port) == board.ports.end();
+        const bool missing = port && std::ranges::find(board.ports, *port) == board.ports.end();
         if (!missing && !board.absent_keys.contains(key.id)) values.emplace(key.id, key.default_value);
     }
     erase_rates_of_missing_ports(board, values);
@@ -74,7 +74,7 @@ std::uint64_t number_of_talker(std::string_view talker) {
 void write_signals(const BoardProfile& board, FactoryWriter& writer) {
     const auto& enabled = board.constellations;
     for (const SystemKeys& system : system_keys_of_signals) {
-        const bool on = std::find(enabled.begin(), enabled.end(), system.constellation) != enabled.end();
+        const bool on = std::ranges::find(enabled, system.constellation) != enabled.end();
         writer.set(system.enable, on);
         const auto second = second_signal(system.constellation, board.second_band);
         for (const SignalKey& s : signal_keys)
@@ -221,7 +221,7 @@ std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_
         case key::uart1_baudrate:
         case key::uart2_baudrate:
             return board.bauds.empty() ? value >= slowest_baud && value <= fastest_baud
-                                       : std::find(board.bauds.begin(), board.bauds.end(), value) != board.bauds.end();
+                                       : std::ranges::find(board.bauds, value) != board.bauds.end();
         case key::nmea_protver:
             if (board.identity.generation > newest_with_nmea_2) return std::nullopt;
             return value == 21 || value == 23 || value == number_of(board.nmea_version);
@@ -244,8 +244,8 @@ bool is_on(const ConfigValues& values, std::uint32_t key) {
 }
 
 bool is_measured(const ConfigValues& values, SystemSignal signal) {
-    return std::any_of(signal_keys.begin(), signal_keys.end(),
-                       [&](const SignalKey& s) { return s.signal == signal && is_on(values, s.enable); });
+    return std::ranges::any_of(signal_keys,
+                               [&](const SignalKey& s) { return s.signal == signal && is_on(values, s.enable); });
 }
 
 // A system that is off may have any.
@@ -255,7 +255,7 @@ bool has_half_of_its_bands(const BoardProfile& board, const ConfigValues& values
     const bool first_on = is_measured(values, {system.constellation, first_signal(system.constellation)});
     const bool second_on = is_measured(values, {system.constellation, *second});
     const auto& alone = board.first_band_alone;
-    const bool does_alone = std::find(alone.begin(), alone.end(), system.constellation) != alone.end();
+    const bool does_alone = std::ranges::find(alone, system.constellation) != alone.end();
     return first_on != second_on && !(first_on && does_alone);
 }
 
@@ -302,7 +302,7 @@ bool is_in_range(const BoardProfile& board, std::uint32_t key, std::uint64_t val
 
 const ConfigValues::value_type* first_out_of_range(const BoardProfile& board, const ConfigValues& values) {
     const auto in_range = [&board](const auto& item) { return is_in_range(board, item.first, item.second); };
-    const auto found = std::find_if_not(values.begin(), values.end(), in_range);
+    const auto found = std::ranges::find_if_not(values, in_range);
     return found == values.end() ? nullptr : &*found;
 }
 
@@ -313,16 +313,14 @@ bool is_signal_plan(const BoardProfile& board, const ConfigValues& values) {
         if (!system.is_major || !is_on(values, system.enable)) continue;
         const auto on = [&values](std::uint32_t key) { return key != 0 && is_on(values, key); };
         // A system without a signal is not tracked. It is taken: clients change B1I for B1C key by key.
-        if (std::any_of(system.first.begin(), system.first.end(), on)) ++major;
+        if (std::ranges::any_of(system.first, on)) ++major;
     }
     const auto is_half = [&](const SystemKeys& system) { return has_half_of_its_bands(board, values, system); };
-    if (board.bands_together && std::any_of(system_keys_of_signals.begin(), system_keys_of_signals.end(), is_half))
-        return false;
+    if (board.bands_together && std::ranges::any_of(system_keys_of_signals, is_half)) return false;
     const auto is_whole = [&values](const std::set<std::uint32_t>& conflict) {
-        return std::all_of(conflict.begin(), conflict.end(), [&](std::uint32_t key) { return is_on(values, key); });
+        return std::ranges::all_of(conflict, [&](std::uint32_t key) { return is_on(values, key); });
     };
-    return major > 0 && major <= board.most_systems &&
-           std::none_of(board.signal_conflicts.begin(), board.signal_conflicts.end(), is_whole);
+    return major > 0 && major <= board.most_systems && std::ranges::none_of(board.signal_conflicts, is_whole);
 }
 
 bool is_consistent(const BoardProfile& board, const ConfigValues& ram) {

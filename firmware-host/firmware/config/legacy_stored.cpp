@@ -123,7 +123,7 @@ CfgDat describe_datum(const LegacyContext& context) {
 bool is_datum(const CfgDatSet& set) {
     constexpr float farthest_m = 5000, widest_turn = 20, largest_scale = 50;
     const auto within = [](const auto& values, float most) {
-        return std::all_of(values.begin(), values.end(), [&](float v) { return v >= -most && v <= most; });
+        return std::ranges::all_of(values, [&](float v) { return v >= -most && v <= most; });
     };
     return set.maj_a >= 6.3e6 && set.maj_a <= 6.5e6 && set.flat >= 0 && set.flat <= 500 &&
            within(set.shift, farthest_m) && within(set.rotation, widest_turn) && set.scale >= 0 &&

@@ -79,7 +79,7 @@ std::int64_t reported_week(const NavigationState& state, const WeekAndTow& now) 
 
 bool has_dops(const Fix& fix) {
     if (fix.type != FixType::dead_reckoning) return fix.has_position();
-    return std::any_of(fix.satellites.begin(), fix.satellites.end(), [](const SatelliteStatus& s) { return s.used; });
+    return std::ranges::any_of(fix.satellites, [](const SatelliteStatus& s) { return s.used; });
 }
 
 ReportedTime reported_time(const ReportContext& context) {

@@ -44,8 +44,8 @@ MonGnss systems(const ReportContext& context) {
     m.supported = board.gnss_supported;
     m.simultaneous = board.gnss_simultaneous;
     for (const SystemBit& system : system_bits) {
-        const bool from_factory = std::find(board.constellations.begin(), board.constellations.end(),
-                                            system.constellation) != board.constellations.end();
+        const bool from_factory =
+            std::ranges::find(board.constellations, system.constellation) != board.constellations.end();
         const bool enabled =
             context.config.has(system.key) ? is_enabled(context.config, system.constellation) : from_factory;
         if (from_factory) m.default_gnss |= system.bit;
@@ -61,8 +61,7 @@ constexpr std::array<std::uint8_t, 4> boot_types{1, 3, 6, 5};
 MonSys system_load(const ReportContext& context) {
     constexpr double idle_percent = 8, percent_per_satellite = 0.7;
     const auto& satellites = context.state.epoch.fix.satellites;
-    const auto tracked =
-        std::count_if(satellites.begin(), satellites.end(), [](const SatelliteStatus& s) { return s.cn0.has_value(); });
+    const auto tracked = std::ranges::count_if(satellites, [](const SatelliteStatus& s) { return s.cn0.has_value(); });
     MonSys m;
     m.boot_type = boot_types[static_cast<std::size_t>(context.state.boot_cause)];
     m.cpu_load = m.cpu_load_max =

@@ -84,12 +84,12 @@ void add_groups(NmeaReport& r, const std::vector<Constellation>& listed) {
     for (const Constellation constellation : listed) {
         const NmeaSystem system = nmea_system(constellation, r.format.version);
         const auto same = [&](const NmeaGroup& group) { return group.system == system; };
-        if (std::any_of(r.groups.begin(), r.groups.end(), same)) continue;
+        if (std::ranges::any_of(r.groups, same)) continue;
         r.groups.push_back({system, main_talker_everywhere ? r.talker : own_talker(system, c.board, c.config),
                             tracked_signal_id(r, constellation, first_signal(constellation))});
     }
-    std::sort(r.groups.begin(), r.groups.end(),
-              [](const NmeaGroup& a, const NmeaGroup& b) { return a.system.system_id < b.system.system_id; });
+    std::ranges::sort(r.groups,
+                      [](const NmeaGroup& a, const NmeaGroup& b) { return a.system.system_id < b.system.system_id; });
 }
 
 // The solution weighed it and left it out. One below the mask has a residual too, but was never a candidate.
@@ -104,7 +104,7 @@ bool is_considered(const NmeaReport& r, const SatelliteStatus& s) {
 void add_satellites(NmeaReport& r, const std::vector<Constellation>& enabled,
                     const std::vector<Constellation>& listed) {
     const auto within = [](const std::vector<Constellation>& list, const SatelliteStatus& s) {
-        return std::find(list.begin(), list.end(), s.id.constellation) != list.end();
+        return std::ranges::find(list, s.id.constellation) != list.end();
     };
     const bool consider = r.context.config.flag(key::nmea_consider);
     for (const SatelliteStatus& s : r.fix().satellites) {

@@ -168,8 +168,7 @@ RxmMeasx code_measurements(const ReportContext& context) {
 
 // Channels are numbered as the satellites are listed.
 std::uint8_t tracking_channel(SatelliteId id, const Fix& fix) {
-    const auto found =
-        std::find_if(fix.satellites.begin(), fix.satellites.end(), [&](const auto& s) { return s.id == id; });
+    const auto found = std::ranges::find_if(fix.satellites, [&](const auto& s) { return s.id == id; });
     return found == fix.satellites.end() ? std::uint8_t{0}
                                          : field<std::uint8_t>(static_cast<double>(found - fix.satellites.begin()));
 }

@@ -155,7 +155,7 @@ SkyFields sky_fields(const SatelliteStatus& s, const NavigationState& state) {
 
 std::vector<SatelliteStatus> sorted_satellites(const Fix& fix) {
     std::vector<SatelliteStatus> list = fix.satellites;
-    std::sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
+    std::ranges::sort(list, [](const auto& a, const auto& b) { return a.id < b.id; });
     if (list.size() > ubx_most_items) list.resize(ubx_most_items);
     return list;
 }
@@ -177,7 +177,7 @@ std::uint32_t satellite_quality(const SatelliteStatus& s, const NavigationState&
     if (!s.cn0) return 1;
     const auto& signals = state.epoch.observations.signals;
     if (signals.empty()) return 7;
-    const auto found = std::find_if(signals.begin(), signals.end(), [&](const auto& o) { return o.satellite == s.id; });
+    const auto found = std::ranges::find_if(signals, [&](const auto& o) { return o.satellite == s.id; });
     return found == signals.end() ? 2 : signal_quality(*found);
 }
 
@@ -274,12 +274,12 @@ NavSig signals(const ReportContext& context) {
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
         const auto of_it = [&](const Observation& o) { return o.satellite == s.id; };
         const auto usable = [&](const Observation& o) { return of_it(o) && !is_unhealthy_l5(o, context.config); };
-        const bool two = std::count_if(measured.begin(), measured.end(), usable) > 1;
-        if (std::none_of(measured.begin(), measured.end(), of_it)) m.signals.push_back(signal_item({&s}, context));
+        const bool two = std::ranges::count_if(measured, usable) > 1;
+        if (std::ranges::none_of(measured, of_it)) m.signals.push_back(signal_item({&s}, context));
         for (const Observation& o : measured)
             if (of_it(o)) m.signals.push_back(signal_item({&s, &o, two, !usable(o)}, context));
     }
-    std::stable_sort(m.signals.begin(), m.signals.end(), [](const NavSigItem& a, const NavSigItem& b) {
+    std::ranges::stable_sort(m.signals, [](const NavSigItem& a, const NavSigItem& b) {
         return std::tie(a.gnss_id, a.sv_id, a.sig_id) < std::tie(b.gnss_id, b.sv_id, b.sig_id);
     });
     return m;
