@@ -58,8 +58,7 @@ int print_plan_of(const CampaignOptions& options) {
     const auto warnings = check_runs(*campaign, all, stop_was_asked);
     if (!warnings) return messages.error(warnings.error());
     if (stop_was_asked()) return told_stopped(messages);
-    for (const std::string& warning : *warnings)
-        messages.warning(warning);
+    messages.warnings(*warnings);
     fmt::print("number,key,seed");
     for (const std::string& name : campaign->plan.parameters())
         fmt::print(",{}", table_cell(name));

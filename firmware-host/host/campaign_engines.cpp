@@ -221,8 +221,7 @@ int hand_over(const CampaignOptions& options, const OpenedCampaign& campaign, co
         const auto warnings = check_runs(campaign, all, stop_was_asked);
         if (!warnings) return messages.error(warnings.error());
         if (stop_was_asked()) return told_stopped(messages);
-        for (const std::string& warning : *warnings)
-            messages.warning(warning);
+        messages.warnings(*warnings);
         OpenedCampaign whole = campaign;
         whole.setup.file = task->scenario;
         if (const auto kept = keep_campaign(task->out, whole); !kept) return messages.error(kept.error());

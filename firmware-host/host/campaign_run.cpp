@@ -90,8 +90,7 @@ public:
         const auto warnings = check_runs(campaign_, missing_, stop_was_asked);
         if (!warnings) return messages_.error(warnings.error());
         if (stop_was_asked()) return told_stopped(messages_);
-        for (const std::string& warning : *warnings)
-            messages_.warning(warning);
+        messages_.warnings(*warnings);
         auto held = keep_campaign(options_.out, campaign_);
         if (!held) return messages_.error(held.error());
         held_ = std::move(*held);
@@ -265,8 +264,7 @@ int run_campaign(const CampaignOptions& options) {
     catch_stop_signals();
     const auto campaign = open_campaign(campaign_request(options));
     if (!campaign) return messages.error(campaign.error());
-    for (const std::string& warning : campaign->warnings)
-        messages.warning(warning);
+    messages.warnings(campaign->warnings);
     if (!options.engine.name.empty()) return hand_over(options, *campaign, messages);
     CampaignLeader leader(messages, options, *campaign);
     const int code = leader.run(*shard);

@@ -59,7 +59,7 @@ Result<FixSeries> read_view(const FileView& view, const Geoid* geoid) {
 // Errors up and in space would be about the ellipsoid, without a height.
 Result<Geodetic> reference_place(const std::string& text) {
     auto place = parse_place(text, "--reference");
-    if (place && std::count(text.begin(), text.end(), ',') < 2)
+    if (place && std::ranges::count(text, ',') < 2)
         return fail(
             ErrorCode::usage,
             fmt::format("--reference {}: expected LAT,LON,HEIGHT, the height above the ellipsoid in metres", text));
@@ -91,14 +91,12 @@ int compare_files(const CompareOptions& options) {
         geoid.get());
     if (!b) return messages.error(b.error());
     for (const FixSeries* series : {&*a, &*b})
-        for (const std::string& warning : series->warnings)
-            messages.warning(warning);
+        messages.warnings(series->warnings);
     const auto result = compare(*a, *b, wanted);
     if (!result) return messages.error(result.error());
     if (options.format == "svg") {
         // Text and JSON hold them, a picture cannot.
-        for (const std::string& warning : result->warnings)
-            messages.warning(warning);
+        messages.warnings(result->warnings);
         fmt::print("{}", scatter_plot_svg({a->name, position_errors(*a, wanted.reference)},
                                           {b->name, position_errors(*b, wanted.reference)}, wanted.quantity));
     } else {

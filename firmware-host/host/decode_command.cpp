@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -90,9 +91,7 @@ struct Wanted {
     std::vector<StreamKind> named;  // by the user; empty: all that are found
 };
 
-bool is_automatic(const std::vector<std::string>& words) {
-    return std::find(words.begin(), words.end(), "auto") != words.end();
-}
+bool is_automatic(const std::vector<std::string>& words) { return std::ranges::find(words, "auto") != words.end(); }
 
 Wanted wanted_of(const std::vector<std::string>& words) {
     Wanted wanted;

@@ -44,6 +44,10 @@ void Messages::info(const std::string& text) const {
     if (!verbosity_.quiet) say("info", text);
 }
 void Messages::warning(const std::string& text) const { say("warning", text); }
+void Messages::warnings(std::span<const std::string> texts) const {
+    for (const std::string& text : texts)
+        warning(text);
+}
 
 int Messages::error(const Error& error) const {
     std::istringstream lines(error.message);

@@ -1,6 +1,7 @@
 /// What the program says to its user, on stderr.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,7 @@ public:
     void detail(const std::string& text) const;
     void info(const std::string& text) const;
     void warning(const std::string& text) const;
+    void warnings(std::span<const std::string> texts) const;
     /// One line of the error's message a line; gives the exit code that belongs to it.
     int error(const Error& error) const;
     [[nodiscard]] const Verbosity& verbosity() const { return verbosity_; }

@@ -52,7 +52,7 @@ Result<std::unique_ptr<PowerWatchdog>> watch_power(const Scenario& scenario, con
 std::unique_ptr<OrphanWatchdog> watch_probes(const Scenario& scenario, const RunMode& mode) {
     const auto& expectations = scenario.expectations;
     const auto asks = [](const Expectation& expectation) { return expectation.probe.has_value(); };
-    if (mode.virtual_time || std::none_of(expectations.begin(), expectations.end(), asks)) return nullptr;
+    if (mode.virtual_time || std::ranges::none_of(expectations, asks)) return nullptr;
     auto watchdog = OrphanWatchdog::start();
     return watchdog ? std::move(*watchdog) : nullptr;
 }
@@ -265,8 +265,7 @@ int check(const RunOptions& options) {
     if (!assembly) return messages.error(with_other_mistakes(assembly.error(), *scenario, data_folders(), mode.now));
     for (const auto& warning : {vehicle_warning(*scenario), pause_warning(*scenario)})
         if (warning) assembly->warnings.push_back(*warning);
-    for (const std::string& warning : assembly->warnings)
-        messages.warning(warning);
+    messages.warnings(assembly->warnings);
     if (!options.verbosity.quiet) print_plan(*scenario, *assembly);
     return 0;
 }

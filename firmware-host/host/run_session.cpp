@@ -57,8 +57,7 @@ GpsTime wall_clock() {
 RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_(messages), assembly_(assembly) {
     for (const std::string& detail : assembly.details)
         messages.detail(detail);
-    for (const std::string& warning : assembly.warnings)
-        messages.warning(warning);
+    messages.warnings(assembly.warnings);
 }
 
 void RunSession::await_feeds() const {

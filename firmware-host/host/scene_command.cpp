@@ -141,7 +141,7 @@ Result<SceneReport> report_of(const SceneOptions& options) {
         if (!place) return fail(place.error());
         at = *place;
     }
-    const bool has_height = std::count(options.at.begin(), options.at.end(), ',') > 1;
+    const bool has_height = std::ranges::count(options.at, ',') > 1;
     std::vector<std::string> unknown_geoid;  // is told by the files where it matters
     const auto geoid = find_geoid(data_folders(), unknown_geoid);
     auto city = read_scene_files(*entry, std::nullopt, CityCache{data_folders().cache}, geoid.get());
@@ -272,8 +272,7 @@ int show_scene(const SceneOptions& options) {
     if (const auto fine = check_pictures(options); !fine) return messages.error(fine.error());
     const auto report = report_of(options);
     if (!report) return messages.error(report.error());
-    for (const std::string& warning : report->city.warnings)
-        messages.warning(warning);
+    messages.warnings(report->city.warnings);
     if (const auto written = write_pictures(options, *report); !written) return messages.error(written.error());
     if (options.json)
         print_json(*report);

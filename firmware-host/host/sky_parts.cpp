@@ -21,7 +21,7 @@ namespace {
 // --at LAT,LON names a place on a street: its height is that of the ground there, or of the foot of the buildings.
 void stand_on_ground(Scenario& scenario, const UrbanScene& scene, const std::string& at) {
     auto* fixed = std::get_if<FixedSettings>(&scenario.trajectory);
-    if (!fixed || at.empty() || std::count(at.begin(), at.end(), ',') > 1) return;
+    if (!fixed || at.empty() || std::ranges::count(at, ',') > 1) return;
     Eigen::Vector3d place = scene.frame().to_enu(to_ecef(fixed->at)).vector();
     place.z() = scene.foot_at(place.x(), place.y()) + antenna_above_scene.value();
     fixed->at.height = to_geodetic(scene.frame().to_ecef(Position<Enu>(place))).height;
@@ -60,8 +60,7 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
         if (const auto place = scene_start(scenario, start); place && !map)
             if (auto doubt = doubt_of_height(*loaded->scene, *place)) warnings.push_back(std::move(*doubt));
     }
-    for (const std::string& warning : warnings)
-        messages.warning(warning);
+    messages.warnings(warnings);
     auto simulation = make_simulation(
         scenario, {std::move(navigation->source), geoid.get(), start, data_folders(), 0, loaded->scene});
     if (!simulation) return fail(simulation.error());
@@ -79,8 +78,7 @@ int show_city_run(const SkyOptions& options, const Scenario& scenario, const Mes
     if (!started) return messages.error(started.error());
     const auto loaded = load_scene(scenario, *started, CityCache{data_folders().cache}, geoid.get());
     if (!loaded) return messages.error(loaded.error());
-    for (const std::string& warning : loaded->warnings)
-        messages.warning(warning);
+    messages.warnings(loaded->warnings);
     fmt::print("{}", city_run_plot_svg(*run, loaded->scene.get(), loaded->scene ? "A run through the city" : "A run"));
     return 0;
 }
@@ -140,7 +138,7 @@ bool stands_in(const UrbanScene& scene, const CoverageMap& map) {
 }
 
 CoverageQuantity shown_quantity(const std::string& name) {
-    const auto found = std::find(coverage_quantity_names.begin(), coverage_quantity_names.end(), name);
+    const auto found = std::ranges::find(coverage_quantity_names, name);
     return static_cast<CoverageQuantity>(found - coverage_quantity_names.begin());
 }
 

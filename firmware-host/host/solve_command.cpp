@@ -124,8 +124,7 @@ Result<std::unique_ptr<NavigationSource>> broadcast_of(const SolveOptions& optio
     std::vector<std::string> warnings;
     auto data = read_navigation_files(scenario, file.epochs.front().receive_time, warnings);
     if (!data) return fail(data.error());
-    for (const std::string& warning : warnings)
-        messages.warning(warning);
+    messages.warnings(warnings);
     warn_of_span(file, data->span(), "navigation data", messages);
     return std::make_unique<NavigationData>(std::move(*data));
 }
@@ -215,8 +214,7 @@ int solve_file(const SolveOptions& options) {
     if (const auto spared = check_spares("--out", options.out, inputs); !spared) return messages.error(spared.error());
     auto file = read_observation_file(options.observations);
     if (!file) return messages.error(file.error());
-    for (const std::string& warning : file->warnings)
-        messages.warning(warning);
+    messages.warnings(file->warnings);
     auto broadcast = broadcast_of(options, *file, messages);
     if (!broadcast) return messages.error(broadcast.error());
     auto precise = precise_of(options, *file, messages);
