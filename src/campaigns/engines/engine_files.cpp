@@ -15,7 +15,7 @@ Result<void> write_engine_file(const std::filesystem::path& path, const std::str
     return replace_file(path, text);
 }
 
-std::optional<int> number_in(const std::filesystem::path& file) {
+std::optional<int> whole_number_of(const std::filesystem::path& file) {
     std::ifstream input(file, std::ios::binary);
     std::array<char, 16> bytes{};
     input.read(bytes.data(), bytes.size());

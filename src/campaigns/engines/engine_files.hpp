@@ -16,7 +16,7 @@ namespace skyloop::inline campaigns {
 Result<void> write_engine_file(const std::filesystem::path& path, const std::string& text);
 
 /// The number in a small file, such as an exit code; nothing where there is none, or something else.
-std::optional<int> number_in(const std::filesystem::path& file);
+std::optional<int> whole_number_of(const std::filesystem::path& file);
 
 /// Counts the results in OUT/shards as they come, reading only what is new since the last look.
 class ResultCounter {

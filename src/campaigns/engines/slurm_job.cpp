@@ -186,7 +186,7 @@ Result<bool> Follower::wait_for_queue() {
 Follower::Outcome Follower::outcome_of_shards() const {
     Outcome outcome;
     for (std::size_t shard = 0; shard < task_.shards; ++shard) {
-        const auto code = number_in(exit_file(task_, shard));
+        const auto code = whole_number_of(exit_file(task_, shard));
         if (code == exit_bad_campaign)
             outcome.bad.push_back(shard);
         else if (code != 0 && code != 3)
@@ -229,7 +229,7 @@ std::optional<int> Follower::verdict_on(const Outcome& outcome, std::size_t subm
 int Follower::gathered() const {
     const auto log = slurm_folder(task_) / "log" / "gather.txt";
     if (const auto text = read_text_file(log); text && !text->empty()) options_.say(without_end(*text));
-    const auto code = number_in(slurm_folder(task_) / "exit" / "gather");
+    const auto code = whole_number_of(slurm_folder(task_) / "exit" / "gather");
     if (!code) options_.say(fmt::format("all shards are done, but their gathering did not end; see {}", log.string()));
     return code.value_or(1);
 }

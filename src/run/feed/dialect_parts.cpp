@@ -10,9 +10,9 @@
 namespace skyloop::inline run {
 namespace {
 
-constexpr double fastest_mps = 12000;  // FEEDS.md 3.1
-constexpr double highest_m = 1e6;      // the same
-constexpr double farthest_m = 1e6;     // from an origin: no local frame reaches as far
+constexpr double fastest_mps = 12000;           // FEEDS.md 3.1
+constexpr double highest_m = 1e6;               // the same
+constexpr double farthest_from_origin_m = 1e6;  // from an origin: no local frame reaches as far
 constexpr std::size_t longest_line = 65536;
 
 SampleOr refused_pose(std::string why) { return tl::make_unexpected(std::move(why)); }
@@ -61,8 +61,9 @@ SampleOr sample_of(const SourcePose& pose, const FeedContext& context) {
 
 SampleOr sample_of(const LocalPose& pose, LocalMap native, const FeedContext& context) {
     if (!context.origin) return refused_pose("it counts in metres from its origin; expected an origin in the scenario");
-    if (!(pose.ned.norm() <= farthest_m))
-        return refused_pose(fmt::format("{} m from the origin; expected at most {}", pose.ned.norm(), farthest_m));
+    if (!(pose.ned.norm() <= farthest_from_origin_m))
+        return refused_pose(
+            fmt::format("{} m from the origin; expected at most {}", pose.ned.norm(), farthest_from_origin_m));
     if (auto wrong = wrong_motion(pose.velocity_ned, pose.turn_rate)) return refused_pose(std::move(*wrong));
     const LocalMap map = context.map.value_or(native);
     const Geodetic place = place_on_map(map, *context.origin, pose.ned);

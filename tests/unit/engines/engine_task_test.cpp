@@ -73,9 +73,9 @@ TEST_F(EngineFolder, ANumberIsReadWholeOrNotAtAll) {
                                        {"3\n\n", std::nullopt},
                                        {"99999999999999999999\n", std::nullopt}}) {
         write(root / "n", text);
-        EXPECT_EQ(number_in(root / "n"), number) << text;
+        EXPECT_EQ(whole_number_of(root / "n"), number) << text;
     }
-    EXPECT_EQ(number_in(root / "none"), std::nullopt);
+    EXPECT_EQ(whole_number_of(root / "none"), std::nullopt);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ TEST_F(SlurmEngine, RunsAndGathersWhateverTheNames) {
 TEST_F(SlurmEngine, AFailedVerdictIsAResult) {
     shard_ends_with(1, "3\n");
     EXPECT_EQ(follow_to_end(), "0");
-    EXPECT_EQ(number_in(task.out / "slurm/exit/1"), 3);
+    EXPECT_EQ(whole_number_of(task.out / "slurm/exit/1"), 3);
     EXPECT_EQ(lines_of(root / "words"), 5u);  // nothing was done twice
 }
 
