@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "detail/path_refiner.hpp"
-#include "detail/ray_lattice.hpp"
+#include "world/scene/detail/path_refiner.hpp"
+#include "world/scene/detail/ray_lattice.hpp"
 #include "world/scene/path_finder.hpp"
 
 namespace skyloop::bench {

@@ -10,8 +10,8 @@
 #include <string>
 #include <string_view>
 
-#include "detail/server_core.hpp"
 #include "require.hpp"
+#include "run/control/detail/server_core.hpp"
 
 namespace {
 

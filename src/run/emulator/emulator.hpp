@@ -74,6 +74,7 @@ public:
     [[nodiscard]] Recorder* recorder() { return parts_.stations.front().recorder(); }
     [[nodiscard]] GpsTime now() const { return now_; }
     [[nodiscard]] bool paused() const { return parts_.pacer->paused(); }
+    [[nodiscard]] const Pacer& pacer() const { return *parts_.pacer; }
     [[nodiscard]] const Director& director() const { return parts_.director; }
     /// Null: nobody flies the vehicles from outside.
     [[nodiscard]] LiveFeeds* feeds() { return parts_.feeds.get(); }

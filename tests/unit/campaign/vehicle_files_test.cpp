@@ -1,4 +1,4 @@
-#include "detail/vehicle_run.hpp"
+#include "campaigns/campaign/detail/vehicle_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "detail/false_place.hpp"
 #include "motion/trajectory/geometric_paths.hpp"
+#include "run/fault/detail/false_place.hpp"
 #include "signal_fault_run.hpp"
 
 namespace skyloop {

@@ -1,4 +1,4 @@
-#include "detail/feed_paths.hpp"
+#include "run/feed/detail/feed_paths.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <netinet/in.h>
 
-#include "detail/feed_link.hpp"
+#include "run/feed/detail/feed_link.hpp"
 
 namespace skyloop {
 namespace {

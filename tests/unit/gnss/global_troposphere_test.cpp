@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "detail/gmf_gpt_table.hpp"
 #include "support/oracle_table.hpp"
+#include "world/gnss/detail/gmf_gpt_table.hpp"
 
 namespace skyloop {
 namespace {

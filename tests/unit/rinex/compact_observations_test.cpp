@@ -1,4 +1,4 @@
-#include "detail/compact_observations.hpp"
+#include "world/rinex/detail/compact_observations.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
