@@ -1,5 +1,8 @@
-# cmake -DFOLDER=FOLDER -DFUNCTION=NAME -DOUT=FILE -P EmbedFiles.cmake: the files of a folder as a C++ source, which defines
-# std::span<const EmbeddedFile> NAME() (base/core/embedded_file.hpp).
+# cmake -DFOLDER=FOLDER -DFUNCTION=NAME -DOUT=FILE -P EmbedFiles.cmake: the files of src/DISTRICT/ROOM/FOLDER as a C++ source, which
+# defines std::span<const EmbeddedFile> NAME() in the namespace of the district (base/core/embedded_file.hpp).
+cmake_path(GET FOLDER PARENT_PATH room)
+cmake_path(GET room PARENT_PATH district)
+cmake_path(GET district FILENAME district)
 file(GLOB names RELATIVE ${FOLDER} ${FOLDER}/*)
 list(SORT names)
 set(arrays "")
@@ -17,7 +20,7 @@ foreach(name IN LISTS names)
 endforeach()
 file(WRITE ${OUT} "#include \"base/core/embedded_file.hpp\"
 
-namespace skyloop {
+namespace skyloop::inline ${district} {
 
 std::span<const EmbeddedFile> ${FUNCTION}();
 
@@ -31,5 +34,5 @@ ${rows}};
 
 std::span<const EmbeddedFile> ${FUNCTION}() { return ${FUNCTION}_table; }
 
-}  // namespace skyloop
+}  // namespace skyloop::inline ${district}
 ")
