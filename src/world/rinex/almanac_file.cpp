@@ -21,7 +21,7 @@ bool contains_word(std::string_view line, std::string_view word) {
 }
 
 // Unlike the columns of RINEX what stands here may be set with tabs.
-constexpr std::string_view blanks = " \t";
+constexpr std::string_view almanac_blanks = " \t";
 
 // What an almanac says of one number, and what can be.
 struct AlmanacRange {
@@ -107,7 +107,8 @@ public:
     YumaReading(std::string_view text, std::string_view name, GpsTime near) : lines_(text), name_(name), near_(near) {}
 
     Result<std::vector<KeplerEphemeris>> read() {
-        for (std::optional<Line> line = lines_.next_filled(blanks); line; line = lines_.next_filled(blanks)) {
+        for (std::optional<Line> line = lines_.next_filled(almanac_blanks); line;
+             line = lines_.next_filled(almanac_blanks)) {
             Result<void> taken;
             if (line->text.find("**") != std::string_view::npos) {
                 taken = finish();
@@ -125,7 +126,7 @@ public:
 private:
     Result<void> take(const Line& line) {
         const std::size_t colon = line.text.find(':');
-        const std::string_view key = trimmed(line.text.substr(0, colon), blanks);
+        const std::string_view key = trimmed(line.text.substr(0, colon), almanac_blanks);
         std::size_t field = 0;
         while (field < almanac_field_count && !key.starts_with(almanac_ranges[field].name))
             ++field;
@@ -134,7 +135,7 @@ private:
         if (given_[field])
             return refused(name_, line.number, fmt::format("'{}' for the second time", almanac_ranges[field].name),
                            "one of each in a record");
-        const std::string_view text = trimmed(line.text.substr(colon + 1), blanks);
+        const std::string_view text = trimmed(line.text.substr(colon + 1), almanac_blanks);
         const std::optional<double> value = real_field(text);
         if (!value || text.empty())
             return refused(name_, line.number, in_quotes(text),
@@ -214,12 +215,12 @@ public:
 private:
     std::optional<Line> peek() {
         LineReader ahead = lines_;
-        return ahead.next_filled(blanks);
+        return ahead.next_filled(almanac_blanks);
     }
 
     // The next line that is not empty: `count` numbers, three at most, and at most `most` words in all.
     Result<std::array<double, 3>> numbers(std::string_view what, std::size_t count, std::size_t most) {
-        const std::optional<Line> line = lines_.next_filled(blanks);
+        const std::optional<Line> line = lines_.next_filled(almanac_blanks);
         if (!line) return refused(name_, lines_.number(), "the end of the file", what);
         const std::vector<std::string_view> words = words_of(line->text);
         std::array<double, 3> values{};
@@ -254,7 +255,7 @@ private:
 
 bool is_yuma(std::string_view text) {
     LineReader lines(text);
-    const std::optional<Line> first = lines.next_filled(blanks);
+    const std::optional<Line> first = lines.next_filled(almanac_blanks);
     return first && first->text.starts_with('*') && contains_word(first->text, "almanac");
 }
 
@@ -264,8 +265,8 @@ bool is_whole(std::string_view word) {
 
 bool is_sem(std::string_view text) {
     LineReader lines(text);
-    const std::optional<Line> first = lines.next_filled(blanks);
-    const std::optional<Line> second = lines.next_filled(blanks);
+    const std::optional<Line> first = lines.next_filled(almanac_blanks);
+    const std::optional<Line> second = lines.next_filled(almanac_blanks);
     if (!first || !second) return false;
     const auto head = words_of(first->text);
     const auto time = words_of(second->text);
