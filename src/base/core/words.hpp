@@ -34,8 +34,15 @@ inline std::string upper_case(std::string_view text) {
 
 /// Without any of the characters `around` at both ends.
 constexpr std::string_view trimmed(std::string_view text, std::string_view around = " ") {
-    text.remove_prefix(std::min(text.find_first_not_of(around), text.size()));
-    return text.substr(0, text.find_last_not_of(around) + 1);
+    // Every field of a file comes by here: with find_first_not_of() a day of SP3 takes a third more instructions.
+    const auto goes = [around](char c) {
+        return around.size() == 1 ? c == around.front() : around.find(c) != around.npos;
+    };
+    while (!text.empty() && goes(text.front()))
+        text.remove_prefix(1);
+    while (!text.empty() && goes(text.back()))
+        text.remove_suffix(1);
+    return text;
 }
 
 /// The length in bytes of the UTF-8 character at the start of `text`, 0 when it is none or cut (RFC 3629, section 4).
