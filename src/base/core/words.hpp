@@ -32,16 +32,19 @@ inline std::string upper_case(std::string_view text) {
     return upper;
 }
 
-/// Without any of the characters `around` at both ends.
-constexpr std::string_view trimmed(std::string_view text, std::string_view around = " ") {
-    // Every field of a file comes by here: with find_first_not_of() a day of SP3 takes a third more instructions.
-    const auto goes = [around](char c) {
-        return around.size() == 1 ? c == around.front() : around.find(c) != around.npos;
-    };
-    while (!text.empty() && goes(text.front()))
+/// Without blanks at both ends. Every field of a file comes by here: a search takes several times as long.
+constexpr std::string_view trimmed(std::string_view text) {
+    while (text.starts_with(' '))
         text.remove_prefix(1);
-    while (!text.empty() && goes(text.back()))
+    while (text.ends_with(' '))
         text.remove_suffix(1);
+    return text;
+}
+
+/// Without any of the characters `around` at both ends.
+constexpr std::string_view trimmed(std::string_view text, std::string_view around) {
+    text.remove_prefix(std::min(text.find_first_not_of(around), text.size()));
+    text.remove_suffix(text.size() - (text.find_last_not_of(around) + 1));
     return text;
 }
 
