@@ -1,4 +1,4 @@
-// Names of configuration keys in decoded messages: the receiver knows them, the protocol layer does not.
+// `skyloop decode`, with the names of configuration keys: the receiver knows them, the protocol layer does not.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,10 +25,6 @@
 
 namespace skyloop::host {
 
-/// Adds to CFG-VALSET and CFG-VALGET a `name` beside each `key` of `pairs`, and to CFG-VALGET and CFG-VALDEL the list
-/// `names` after `keys`. A key that is not known has no name. Other messages stay as they are.
-void name_config_keys(DecodedMessage& message);
-
 namespace {
 
 DecodedValue name_of(const DecodedValue& key) {
@@ -45,8 +41,8 @@ void name_pair(DecodedValue& pair) {
     fields->insert(fields->begin() + 1, std::move(name));
 }
 
-}  // namespace
-
+// Adds to CFG-VALSET and CFG-VALGET a `name` beside each `key` of `pairs`, and to CFG-VALGET and CFG-VALDEL the list
+// `names` after `keys`. A key that is not known has no name. Other messages stay as they are.
 void name_config_keys(DecodedMessage& message) {
     if (message.protocol != "ubx" || !message.name.starts_with("CFG-VAL")) return;
     for (std::size_t i = 0; i < message.fields.size(); ++i) {
@@ -65,8 +61,6 @@ void name_config_keys(DecodedMessage& message) {
         }
     }
 }
-
-namespace {
 
 constexpr std::array<StreamKind, 6> all_kinds{StreamKind::ubx, StreamKind::nmea,    StreamKind::rtcm3,
                                               StreamKind::msp, StreamKind::mavlink, StreamKind::sbf};

@@ -1,4 +1,4 @@
-// Devices as text and as JSON.
+// `skyloop devices`, as text and as JSON.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,19 +21,6 @@
 #include "wire/devices/device_list.hpp"
 
 namespace skyloop::host {
-
-/// The table of `skyloop devices`, a device a line, under it what else there is to say.
-std::string device_table(std::span<const DeviceEntry> devices);
-/// One line: "+ 1-2 0403:6015 bridge /dev/ttyUSB0 FTDI ...", with its doubts under it.
-std::string device_news_line(const DeviceNews& news);
-/// docs/known_devices.md
-std::string known_devices_page(std::span<const DeviceProfile> profiles);
-
-/// The keys are written in docs/devices.md.
-Json device_json(const DeviceEntry& device);
-Json known_device_json(const DeviceProfile& profile);
-/// On one line, whatever bytes its texts hold.
-std::string json_line(const Json& json);
 
 namespace {
 
@@ -135,8 +122,7 @@ Json node_json(const DeviceNode& node) {
             {"mode", fmt::format("{:03o}", node.mode)}};
 }
 
-}  // namespace
-
+// The table of `skyloop devices`, a device a line, under it what else there is to say.
 std::string device_table(std::span<const DeviceEntry> devices) {
     std::vector<DeviceColumns> rows{{"PORT", "USB", "KIND", "NODES"}};
     for (const DeviceEntry& device : devices)
@@ -156,6 +142,7 @@ std::string device_table(std::span<const DeviceEntry> devices) {
     return text;
 }
 
+// One line: "+ 1-2 0403:6015 bridge /dev/ttyUSB0 FTDI ...", with its doubts under it.
 std::string device_news_line(const DeviceNews& news) {
     const DeviceColumns columns = columns_of(news.device);
     std::string text = fmt::format("{} {}  {}{}\n", news.arrived ? '+' : '-', fmt::join(columns, "  "),
@@ -166,6 +153,7 @@ std::string device_news_line(const DeviceNews& news) {
     return text;
 }
 
+// docs/known_devices.md
 std::string known_devices_page(std::span<const DeviceProfile> profiles) {
     std::string page =
         "# Known devices\n\nWritten by `skyloop devices --known` from the files in `boards/autopilots` and "
@@ -180,6 +168,7 @@ std::string known_devices_page(std::span<const DeviceProfile> profiles) {
     return page;
 }
 
+// The keys are written in docs/devices.md.
 Json device_json(const DeviceEntry& device) {
     Json json{{"port_path", nullptr},
               {"usb", nullptr},
@@ -228,10 +217,6 @@ Json known_device_json(const DeviceProfile& profile) {
             {"hints", profile.hints}};
 }
 
-std::string json_line(const Json& json) { return json_text(json); }
-
-namespace {
-
 struct DevicesOptions {
     bool json = false;
     bool watch = false;
@@ -249,7 +234,7 @@ void print_known(std::span<const DeviceProfile> profiles, bool json) {
     Json list = Json::array();
     for (const DeviceProfile& profile : profiles)
         list.push_back(known_device_json(profile));
-    fmt::print("{}\n", json_line({{"known", list}}));
+    fmt::print("{}\n", json_text({{"known", list}}));
 }
 
 int print_devices(std::span<const DeviceProfile> profiles, const DevicesOptions& options, const Messages& messages) {
@@ -260,7 +245,7 @@ int print_devices(std::span<const DeviceProfile> profiles, const DevicesOptions&
         Json list = Json::array();
         for (const DeviceEntry& device : *devices)
             list.push_back(device_json(device));
-        fmt::print("{}\n", json_line({{"devices", list}}));
+        fmt::print("{}\n", json_text({{"devices", list}}));
         return 0;
     }
     if (devices->empty())
@@ -274,7 +259,7 @@ void print_news(const DeviceNews& news, bool json) {
     if (is_root_hub(news.device)) return;
     if (json)
         fmt::print("{}\n",
-                   json_line({{"event", news.arrived ? "arrived" : "left"}, {"device", device_json(news.device)}}));
+                   json_text({{"event", news.arrived ? "arrived" : "left"}, {"device", device_json(news.device)}}));
     else
         fmt::print("{}", device_news_line(news));
     std::fflush(stdout);  // a line is there when its device is

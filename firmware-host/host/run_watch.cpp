@@ -122,13 +122,6 @@ namespace {
 constexpr int expectations_not_met = 3;
 constexpr std::size_t most_planned_events = 10'000;  // that are looked at: what comes every millisecond comes for ever
 
-std::vector<std::string> receiver_names(const Emulator& emulator) {
-    std::vector<std::string> names;
-    for (const Station& station : emulator.stations())
-        names.push_back(station.name());
-    return names;
-}
-
 // What displays show of them. @param going_on the run: what is undecided is pending
 std::vector<VerdictStatus> verdict_states(const std::vector<Verdict>& verdicts, bool going_on) {
     std::vector<VerdictStatus> states;

@@ -1,4 +1,4 @@
-// What `skyloop trajectory` found, as people and as programs read it.
+// `skyloop trajectory`, as people and as programs read it.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,7 +27,9 @@
 
 namespace skyloop::host {
 
-/// A path and what is to be told of it.
+namespace {
+
+// A path and what is to be told of it.
 struct TrajectoryListing {
     std::string name;                  ///< of the file
     std::string kind;                  ///< "track", "waypoints", …
@@ -38,12 +40,6 @@ struct TrajectoryListing {
     PathSurvey survey;
     std::vector<ExceededLimit> exceeded;
 };
-
-std::string trajectory_text(const TrajectoryListing& listing);
-/// One object; every number SI, angles in degrees.
-std::string trajectory_json(const TrajectoryListing& listing);
-
-namespace {
 
 // A number and when it was so.
 std::string when_text(const PathExtreme& extreme, std::string_view unit) {
@@ -59,8 +55,6 @@ std::string limit_text(const ExceededLimit& limit) {
 }
 
 constexpr double degrees_per_radian = 57.295779513082321;
-
-}  // namespace
 
 std::string trajectory_text(const TrajectoryListing& listing) {
     const PathSurvey& s = listing.survey;
@@ -102,6 +96,7 @@ std::string trajectory_text(const TrajectoryListing& listing) {
     return text;
 }
 
+// One object; every number SI, angles in degrees.
 std::string trajectory_json(const TrajectoryListing& listing) {
     const PathSurvey& s = listing.survey;
     Json json{{"file", listing.name}, {"kind", listing.kind}, {"description", listing.description}};
@@ -140,8 +135,6 @@ std::string trajectory_json(const TrajectoryListing& listing) {
     // Names of files may hold what is no UTF-8.
     return json_text(json, 2) + "\n";
 }
-
-namespace {
 
 struct TrajectoryOptions {
     std::string file, vehicle, format = "text";

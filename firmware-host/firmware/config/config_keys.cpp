@@ -1,5 +1,6 @@
-// Messages that can be sent periodically, with the keys of their rates (CFG-MSGOUT: u-blox F9 interface description HPG
-// 1.32, section 6.9; RECEIVER.md 3.5.2). Keys of the group FE are our own: no interface description has one for these.
+// Configuration keys by id and by name. The keys of the rates of periodic messages are those of CFG-MSGOUT (u-blox F9
+// interface description HPG 1.32, section 6.9); keys of the group FE are our own: no interface description has one for
+// these.
 #include "firmware/config/config_keys.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// PUBX,00, 03 and 04 (RECEIVER.md 5.7).
+// Sentences of the receiver's state, and PUBX,00, 03 and 04 (u-blox M8 interface description UBX-13003221, PUBX
+// messages).
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// What is wrong with a campaign before any of its runs.
+// Opens a campaign, and finds what is wrong with it before any of its runs.
 
 #include <fmt/format.h>
 
@@ -21,23 +21,20 @@
 
 namespace skyloop::inline campaigns {
 
-/// Everything is read, nothing is run.
+namespace {
+
+// Everything is read, nothing is run.
 Result<Assembly> checked_assembly(const Scenario& scenario, const DataFolders& data);
 
-/// Where the values of a campaign come from.
+// Where the values of a campaign come from.
 struct CampaignSource {
     const std::string& text;                  ///< of the scenario
     const std::filesystem::path& file;        ///< its name
     const std::vector<std::string>& options;  ///< OpenedCampaign::options
 };
 
-/// Where a key is varied: "--vary KEY", else FILE:LINE:COLUMN of its parameter.
+// Where a key is varied: "--vary KEY", else FILE:LINE:COLUMN of its parameter.
 std::string place_of_varied(const CampaignSource& source, std::string_view key);
-
-/// Fails with `input` where two parameters set the same key of the scenario, under whatever names.
-Result<void> check_parameter_keys(const CampaignSource& source, const CampaignSettings& settings);
-
-namespace {
 
 // Of a longer list not every value costs an assembly.
 constexpr std::size_t most_values_assembled = 200;
@@ -160,8 +157,6 @@ bool meets(const std::string& place, const std::string& other) {
     return place == other || place.starts_with(other + ".") || other.starts_with(place + ".");
 }
 
-}  // namespace
-
 Result<Assembly> checked_assembly(const Scenario& scenario, const DataFolders& data) {
     RunMode mode = campaign_mode(scenario);
     mode.open_ports = false;
@@ -187,6 +182,7 @@ std::string place_of_varied(const CampaignSource& source, std::string_view key) 
     return place_of_parameter(source.text, source.file, key);
 }
 
+// Fails with `input` where two parameters set the same key of the scenario, under whatever names.
 Result<void> check_parameter_keys(const CampaignSource& source, const CampaignSettings& settings) {
     std::vector<std::string> places;
     for (const CampaignParameter& parameter : settings.parameters) {
@@ -201,6 +197,8 @@ Result<void> check_parameter_keys(const CampaignSource& source, const CampaignSe
     }
     return {};
 }
+
+}  // namespace
 
 Result<std::vector<std::string>> check_runs(const OpenedCampaign& campaign, const std::vector<std::uint64_t>& wanted,
                                             const std::function<bool()>& stopped) {

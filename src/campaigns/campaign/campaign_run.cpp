@@ -1,4 +1,4 @@
-// Figures of one run.
+// One run of a campaign, and its figures.
 #include "campaigns/campaign/campaign_run.hpp"
 
 #include <fmt/format.h>
@@ -25,15 +25,33 @@
 
 namespace skyloop::inline campaigns {
 
-/// Names of all figures, units in them, in the order of tables: fix_share, horizontal_error_p95_m, …
-std::span<const std::string_view> metric_names();
+namespace {
 
-/// Watches the solutions of the first receiver, as fixes.csv holds them. State: two numbers an epoch with a fix.
+// Names of all figures, units in them, in the order of tables.
+constexpr std::array<std::string_view, 15> metric_names{
+    "epochs",
+    "fix_share",
+    "time_to_first_fix_s",
+    "outages",
+    "longest_outage_s",
+    "horizontal_error_p50_m",
+    "horizontal_error_p95_m",
+    "horizontal_error_max_m",
+    "vertical_error_p50_m",
+    "vertical_error_p95_m",
+    "vertical_error_max_m",
+    "satellites_used_mean",
+    "satellites_visible_mean",
+    "hdop_mean",
+    "cn0_mean_dbhz",
+};
+
+// Watches the solutions of the first receiver, as fixes.csv holds them. State: two numbers an epoch with a fix.
 class RunMetrics : public RunObserver {
 public:
     explicit RunMetrics(GpsTime start) : start_(start) {}
     void on_epoch(const EpochSeen& seen) override;
-    /// In the order of metric_names(). Nothing where there is none, such as errors of a run without a fix.
+    /// In the order of metric_names. Nothing where there is none, such as errors of a run without a fix.
     [[nodiscard]] std::vector<std::optional<double>> values() const;
 
 private:
@@ -55,35 +73,11 @@ private:
     Sum used_, visible_, hdop_, cn0_;
 };
 
-namespace {
-
-constexpr std::array<std::string_view, 15> all_metric_names{
-    "epochs",
-    "fix_share",
-    "time_to_first_fix_s",
-    "outages",
-    "longest_outage_s",
-    "horizontal_error_p50_m",
-    "horizontal_error_p95_m",
-    "horizontal_error_max_m",
-    "vertical_error_p50_m",
-    "vertical_error_p95_m",
-    "vertical_error_max_m",
-    "satellites_used_mean",
-    "satellites_visible_mean",
-    "hdop_mean",
-    "cn0_mean_dbhz",
-};
-
 void append_errors(std::vector<std::optional<double>>& values, std::span<const double> errors) {
     const auto statistics = sample_statistics(errors);
     if (!statistics) return values.resize(values.size() + 3);
     values.insert(values.end(), {statistics->median, statistics->p95, statistics->max});
 }
-
-}  // namespace
-
-std::span<const std::string_view> metric_names() { return all_metric_names; }
 
 void RunMetrics::follow_fix(GpsTime now, bool has_fix) {
     if (has_fix && !first_fix_) first_fix_ = now;
@@ -123,8 +117,6 @@ std::vector<std::optional<double>> RunMetrics::values() const {
     return values;
 }
 
-namespace {
-
 bool starts_now(const Scenario& scenario) {
     if (scenario.run.start) return false;
     return scenario.run.start_now || scenario.sky.rebase_navigation || scenario.sky.navigation.empty();
@@ -150,11 +142,11 @@ std::vector<std::string> unique_titles(const Scenario& scenario) {
 
 // All values of a run, and those of them that the campaign keeps.
 std::vector<std::optional<double>> kept_metrics(const RunMetrics& metrics, const std::vector<std::string>& names) {
-    const auto all = metric_names();
     const auto values = metrics.values();
     std::vector<std::optional<double>> kept;
     for (const std::string& name : names)
-        kept.push_back(values.at(static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin())));
+        kept.push_back(
+            values.at(static_cast<std::size_t>(std::ranges::find(metric_names, name) - metric_names.begin())));
     return kept;
 }
 
@@ -184,13 +176,6 @@ void take_verdicts(RunResult& result, const std::vector<Verdict>& verdicts) {
     for (std::size_t i = 0; i < verdicts.size(); ++i)
         result.verdicts[i] = {std::string(outcome_name(verdicts[i].outcome)), verdicts[i].evidence};
     result.status = is_success(verdicts) ? "passed" : "failed";
-}
-
-std::vector<std::string> names_of_receivers(const Emulator& emulator) {
-    std::vector<std::string> names;
-    for (const Station& station : emulator.stations())
-        names.push_back(station.name());
-    return names;
 }
 
 }  // namespace
@@ -231,19 +216,18 @@ RunMode campaign_mode(const Scenario& scenario) {
 
 Result<ResultColumns> result_columns(const Scenario& scenario, const std::vector<std::string>& parameters) {
     ResultColumns columns{parameters, {}, unique_titles(scenario)};
-    const auto known = metric_names();
     const CampaignSettings campaign = scenario.campaign.value_or(CampaignSettings{});
     for (const std::string& name : campaign.metrics) {
-        if (std::find(known.begin(), known.end(), name) == known.end())
+        if (std::ranges::find(metric_names, name) == metric_names.end())
             return fail(ErrorCode::usage,
                         fmt::format("{}'{}' is no metric; expected some of {}{}", campaign.metrics_told_at, name,
-                                    fmt::join(known, " "), did_you_mean(name, known)));
+                                    fmt::join(metric_names, " "), did_you_mean(name, metric_names)));
         if (std::find(columns.metrics.begin(), columns.metrics.end(), name) != columns.metrics.end())
             return fail(ErrorCode::usage,
                         fmt::format("{}'{}' is there twice; expected it once", campaign.metrics_told_at, name));
         columns.metrics.push_back(name);
     }
-    if (campaign.metrics.empty()) columns.metrics.assign(known.begin(), known.end());
+    if (campaign.metrics.empty()) columns.metrics.assign(metric_names.begin(), metric_names.end());
     return columns;
 }
 
@@ -259,7 +243,7 @@ Result<RunResult> run_of_campaign(const CampaignRunSetup& setup, const PlannedRu
     Emulator& emulator = *assembly->emulator;
     const bool live = !campaign_mode(*scenario).virtual_time;
     Judge judge(scenario->expectations,
-                {assembly->start, names_of_receivers(emulator), live, probe_environment(emulator), setup.orphans});
+                {assembly->start, receiver_names(emulator), live, probe_environment(emulator), setup.orphans});
     RunMetrics metrics(assembly->start);
     emulator.add_observer(&judge);
     emulator.add_observer(&metrics);

@@ -1,4 +1,4 @@
-// One process of a pool.
+// The processes that run a campaign's runs: one of them, and the pool.
 #include "campaigns/campaign/worker_pool.hpp"
 
 #include <fcntl.h>

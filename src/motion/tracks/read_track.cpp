@@ -1,4 +1,5 @@
-// Files that hold no track though a reader of tables would try: each is refused by what it is, or by its name.
+// The formats of tracks. Files that hold no track though a reader of tables would try are refused by what they are, or
+// by their name.
 #include "motion/tracks/read_track.hpp"
 
 #include <fmt/format.h>
@@ -202,14 +203,6 @@ bool is_track(ByteSpan bytes, const std::string& name) {
     const TrackReading reading;
     const auto read = format_of(track_file(bytes, name, reading)).read;
     return read != read_csv && read != refuse_other_file && read != refuse_flight_log;
-}
-
-std::vector<std::string_view> track_endings() {
-    std::vector<std::string_view> endings;
-    for (const TrackFormat& format : formats)
-        for (const std::string_view ending : format.endings)
-            if (!ending.empty()) endings.push_back(ending);
-    return endings;
 }
 
 }  // namespace skyloop::inline motion

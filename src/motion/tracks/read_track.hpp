@@ -3,8 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
@@ -27,8 +25,5 @@ Result<Track> read_track(ByteSpan bytes, const std::string& name, const TrackRea
 
 /// Whether the content is a format of tracks, other than a table with the names of its columns.
 bool is_track(ByteSpan bytes, const std::string& name);
-
-/// Endings of names that are tracks, each with its dot: ".csv", ".gpx", … For messages and options.
-std::vector<std::string_view> track_endings();
 
 }  // namespace skyloop::inline motion

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <vector>
@@ -68,11 +67,6 @@ std::optional<std::string> implausible(const TruthSample& sample) {
     if (sample.velocity && !(sample.velocity->vector().norm() < fastest_mps))
         return fmt::format("the speed is {:g} m/s; expected less than 12 000", sample.velocity->vector().norm());
     return std::nullopt;
-}
-
-std::string_view live_state_name(LiveState state) {
-    constexpr std::array<std::string_view, 5> names{"silent", "live", "coasting", "fading", "holding"};
-    return names[static_cast<std::size_t>(state)];
 }
 
 LivePath::LivePath(const LivePathSettings& settings) : settings_(settings) {}

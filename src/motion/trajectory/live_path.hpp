@@ -8,7 +8,6 @@
 #include <deque>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "base/core/units.hpp"
 #include "motion/trajectory/trajectory.hpp"
@@ -28,8 +27,6 @@ struct LivePathSettings {
 
 /// How fresh a path is.
 enum class LiveState { silent, live, coasting, fading, holding };
-/// "live"
-std::string_view live_state_name(LiveState state);
 
 /// What a path has seen.
 struct LivePathCounts {

@@ -1,4 +1,4 @@
-// Integrals of smooth functions over short intervals.
+// Curves in a plane, and the integrals over short intervals that their lengths are.
 #include "motion/trajectory/planar_curve.hpp"
 
 #include <algorithm>

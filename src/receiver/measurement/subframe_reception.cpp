@@ -1,4 +1,4 @@
-// What satellites broadcast while some of them say that they are not to be used.
+// Subframes as they come in, also of satellites that say that they are not to be used.
 #include "receiver/measurement/subframe_reception.hpp"
 
 #include <algorithm>

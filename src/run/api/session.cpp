@@ -1,4 +1,4 @@
-// What a caller says of its vehicle, in our frames and units.
+// A led run, and what its caller says of the vehicle, in our frames and units.
 
 #include <fmt/format.h>
 

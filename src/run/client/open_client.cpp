@@ -1,4 +1,5 @@
-// Clients as they are found in sketches and hurried drivers: what they do not ask for will happen to them.
+// Clients by their names. The naive ones are as in sketches and hurried drivers: what they do not ask for will happen
+// to them.
 #include "run/client/open_client.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The page, as files inside the program.
+// What the server answers to each request, the files of the page among it.
 
 #include <fmt/format.h>
 

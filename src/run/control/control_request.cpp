@@ -1,4 +1,4 @@
-// Who may ask: the checks of a request before anything of it is done.
+// Requests, and who may ask: the checks before anything of one is done.
 #include "run/control/control_request.hpp"
 
 #include <fmt/format.h>

@@ -227,6 +227,13 @@ void Emulator::run_epochs(Nanoseconds lateness) {
     }
 }
 
+std::vector<std::string> receiver_names(const Emulator& emulator) {
+    std::vector<std::string> names;
+    for (const Station& station : emulator.stations())
+        names.push_back(station.name());
+    return names;
+}
+
 std::vector<std::string> probe_environment(const Emulator& emulator) {
     if (emulator.wires().empty()) return {};
     const std::string description = emulator.wires().front().link.transport().description();

@@ -104,6 +104,9 @@ private:
     std::function<void(GpsTime)> look_;
 };
 
+/// In the order of the stations.
+std::vector<std::string> receiver_names(const Emulator& emulator);
+
 /// What programs find in their environment that expectations ask: SKYLOOP_PORT, the path of the first wire or its
 /// address. Empty: there is none.
 std::vector<std::string> probe_environment(const Emulator& emulator);

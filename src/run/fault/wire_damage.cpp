@@ -1,4 +1,4 @@
-// Bytes that wait for their time, the end of a stall, or the throughput of a wire.
+// What a damaged wire does to bytes: many wait for their time, the end of a stall, or the throughput of the wire.
 #include "run/fault/wire_damage.hpp"
 
 #include <algorithm>

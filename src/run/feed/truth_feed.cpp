@@ -1,4 +1,4 @@
-// The thread of a feed.
+// A feed of truth, and its thread.
 #include "run/feed/truth_feed.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// JSON Json of scenario files (https://json-schema.org/draft-07). The draft is that of the editors: taplo 0.9, which
+// JSON Schema of scenario files (https://json-schema.org/draft-07). The draft is that of the editors: taplo 0.9, which
 // serves TOML in VS Code, Zed, Helix and Neovim, silently passes over `prefixItems` and what stands beside a `$ref` in
 // schemas of draft 2020-12.
 #include <fmt/format.h>

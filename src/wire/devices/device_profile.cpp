@@ -1,4 +1,5 @@
-// Rules that let a person use the devices of a bench (udev(7); systemd's 73-seat-late.rules acts on the tag uaccess).
+// Profiles of known devices, and rules that let a person use them (udev(7); systemd's 73-seat-late.rules acts on the
+// tag uaccess).
 #include "wire/devices/device_profile.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Stretches of a ray that lie in crowns of trees.
+// The crowns of trees that a ray meets, and its stretches in them.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Sequences of planes that were paths a moment ago.
+// Paths by sequences of planes: those that were paths a moment ago, and new ones.
 #include "world/scene/path_finder.hpp"
 
 #include <algorithm>
