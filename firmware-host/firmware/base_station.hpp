@@ -7,20 +7,10 @@
 
 #include "base/core/units.hpp"
 #include "base/geo/geodetic.hpp"
-#include "firmware/config/config_store.hpp"
+#include "firmware/receiver_config.hpp"
 #include "world/flow/fix.hpp"
 
 namespace skyloop::firmware {
-
-/// When a survey is over: CFG-TMODE-SVIN_MIN_DUR and CFG-TMODE-SVIN_ACC_LIMIT.
-struct SurveyLimits {
-    Seconds least{0};
-    Metres accuracy{0};  ///< 3D, 1 σ
-    bool operator==(const SurveyLimits&) const = default;
-};
-
-/// Nothing unless CFG-TMODE-MODE is 1, and of boards that have no CFG-TMODE.
-std::optional<SurveyLimits> survey_limits(const ConfigStore& config);
 
 /// The weighted mean of all 3D positions so far, until both limits are met; from then on the receiver stands there
 /// (ZED-F9P integration manual, UBX-18010802 R09, Survey-in).
@@ -52,13 +42,7 @@ private:
     bool done_ = false;
 };
 
-/// Told by CFG-TMODE-MODE 2, or found by a survey that is done.
-struct BasePlace {
-    Position<Ecef> position;
-    Metres accuracy;  ///< 1 σ, CFG-TMODE-FIXED_POS_ACC or that of the survey
-};
-
-/// Nothing in the other modes, during a survey, and of boards that have no CFG-TMODE.
-std::optional<BasePlace> base_place(const ConfigStore& config, const std::optional<BaseSurvey>& survey);
+/// Where it has been told that it stands, or what a survey that is done found; nothing else, and during a survey.
+std::optional<BasePlace> base_place(const std::optional<BasePlace>& given, const std::optional<BaseSurvey>& survey);
 
 }  // namespace skyloop::firmware

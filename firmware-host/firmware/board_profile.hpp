@@ -34,7 +34,7 @@ struct SentenceRate {
 };
 
 /// Whose commands a receiver understands, or which protocol other than NMEA and UBX it speaks, without taking commands.
-enum class Personality {
+enum class MakerKind {
     mute,     ///< nobody's
     ublox,    ///< UBX and PUBX
     mtk,      ///< MediaTek PMTK
@@ -163,7 +163,7 @@ inline constexpr std::uint32_t slowest_baud = 1200, fastest_baud = 8'000'000;
 struct BoardProfile {
     std::string name;
     std::string description;
-    Personality personality = Personality::mute;
+    MakerKind maker = MakerKind::mute;
     Identity identity;
     Timing timing;
     Quirks quirks;
@@ -224,6 +224,12 @@ struct BoardProfile {
     std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
     std::set<std::uint32_t> absent_keys;            ///< items that it does not have
 };
+
+/// Whether a UART of the board can be set to a speed.
+inline bool takes_baud(const BoardProfile& board, std::uint64_t baud) {
+    return board.bauds.empty() ? baud >= slowest_baud && baud <= fastest_baud
+                               : std::find(board.bauds.begin(), board.bauds.end(), baud) != board.bauds.end();
+}
 
 /// Whether a message can go out periodically.
 inline bool sends(const BoardProfile& board, UbxMessageId message) {

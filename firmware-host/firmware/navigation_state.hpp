@@ -12,7 +12,7 @@
 #include "base/geo/frames.hpp"
 #include "firmware/base_station.hpp"
 #include "firmware/board_profile.hpp"
-#include "firmware/config/config_store.hpp"
+#include "firmware/receiver_config.hpp"
 #include "firmware/port_id.hpp"
 #include "world/flow/epoch.hpp"
 #include "world/flow/receiver_settings.hpp"
@@ -146,7 +146,7 @@ struct PortTotals {
 /// What a message is made from.
 struct ReportContext {
     const BoardProfile& board;
-    const ConfigStore& config;
+    const ReceiverConfig& config;
     const NavigationState& state;
     std::span<const PortStatus> ports{};
     PortId port = PortId::uart1;                ///< by which it leaves

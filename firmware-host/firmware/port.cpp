@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "firmware/config/config_keys.hpp"
-
 namespace skyloop::firmware {
 namespace {
 
@@ -144,28 +142,15 @@ std::optional<GpsTime> Port::message_ends_at() const {
     return messages_.front().start + line_time(messages_.front().bytes.size());
 }
 
-namespace {
+std::uint32_t bus_speed(PortId port) {
+    constexpr std::uint32_t usb_full_speed = 12'000'000, i2c_fast_mode = 400'000;
+    return port == PortId::usb ? usb_full_speed : i2c_fast_mode;
+}
 
-constexpr std::uint32_t usb_full_speed = 12'000'000, i2c_fast_mode = 400'000;
-
-}  // namespace
-
-std::uint32_t configured_baud(const ConfigStore& store, PortId port) {
-    const auto of_uart = [&store](std::uint32_t item) {
-        return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(store.value(item), slowest_baud, fastest_baud));
-    };
-    switch (port) {
-        case PortId::uart1:
-            return of_uart(key::uart1_baudrate);
-        case PortId::uart2:
-            return of_uart(key::uart2_baudrate);
-        case PortId::usb:
-            return usb_full_speed;
-        case PortId::i2c:
-        case PortId::spi:
-            return i2c_fast_mode;
-    }
-    return 0;
+std::uint32_t factory_baud(PortId port, const BoardProfile& board) {
+    constexpr std::uint32_t of_uart2 = 38'400;
+    if (!is_uart(port)) return bus_speed(port);
+    return port == PortId::uart1 ? board.baud : of_uart2;
 }
 
 void Outbox::plan(GpsTime at, Action action) { plans_.emplace(at, std::move(action)); }

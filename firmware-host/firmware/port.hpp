@@ -14,10 +14,8 @@
 #include "base/core/bytes.hpp"
 #include "base/time/gps_time.hpp"
 #include "firmware/board_profile.hpp"
-#include "firmware/config/config_store.hpp"
 #include "firmware/navigation_state.hpp"
 #include "firmware/receiver.hpp"
-#include "firmware/septentrio/settings.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 
 namespace skyloop::firmware {
@@ -84,16 +82,6 @@ private:
     std::deque<Turn> turns_;  // not generated yet; while there are any, the line never rests
 };
 
-/// The periodic messages that the configuration lets out of a port.
-struct ConfiguredMessages {
-    struct Message {
-        UbxMessageId id;
-        std::uint64_t every = 1;  ///< epochs
-    };
-    std::vector<Message> messages;
-    std::optional<std::uint64_t> revision;  ///< of the configuration that was read; nothing: none yet
-};
-
 /// Both directions of one port, and what is counted of them.
 struct PortUnit {
     PortUnit(PortId port, std::uint32_t baud, const BoardProfile& board)
@@ -105,13 +93,10 @@ struct PortUnit {
     PortId id;
     Port transmit;
     PatientSplitter splitter{};  ///< finds what clients send: UBX, sentences and RTCM 3
-    CommandLineReader command_line{};
     PortStatus status;
     PortTotals totals{};
     GpsTime last_input{};
     std::uint32_t configured_baud = 0;  ///< to which it has been told to go
-    ConfiguredMessages configured;
-    std::optional<std::int64_t> told_pulse{};  ///< of the last TIM-TP
     bool overflowed = false;                   ///< messages were dropped since the last epoch was reported
 };
 
@@ -124,9 +109,10 @@ auto find_unit(Units& units, PortId port) -> decltype(units.data()) {
     return nullptr;
 }
 
-/// The speed of a port by the configuration; of USB, I2C and SPI that of their bus (USB full speed; I2C fast mode).
-/// Commands cannot ask for one that no UART has, stored text may: the nearest that one has.
-std::uint32_t configured_baud(const ConfigStore& store, PortId port);
+/// Of USB, I2C and SPI: USB full speed, I2C fast mode.
+std::uint32_t bus_speed(PortId port);
+/// The speed of a port at the factory.
+std::uint32_t factory_baud(PortId port, const BoardProfile& board);
 
 /// What leaves the receiver, and what is going to happen to its ports, in the order of time.
 ///

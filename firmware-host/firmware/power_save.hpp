@@ -7,29 +7,6 @@
 
 namespace skyloop::firmware {
 
-/// CFG-PM-OPERATEMODE.
-enum class PowerMode { full, on_off, cyclic };
-
-/// What is configured of it (CFG-PM, CFG-PM2, CFG-PMS).
-struct PowerSaveSettings {
-    PowerMode mode = PowerMode::full;
-    Nanoseconds update_period{0};    ///< of on and off; 0: it stays off until it is woken
-    Nanoseconds search_period{0};    ///< from one vain search to the next; 0: the same
-    Nanoseconds grid_offset{0};      ///< of both, after the start of the week
-    Nanoseconds cyclic_period{0};    ///< between epochs of optimized tracking; 0: the navigation period
-    Seconds on_time{0};              ///< in Tracking
-    Seconds least_acquisition{0};    ///< in Acquisition
-    Seconds longest_acquisition{0};  ///< the same without a fix; 0: the receiver's own
-    Seconds time_accuracy{0};        ///< to which the time is to be known with `wait_for_time`
-    bool wait_for_time = false;      ///< before Tracking
-    bool never_off = false;          ///< for want of a fix
-    bool update_ephemerides = false;
-    bool in_utc = true;  ///< weeks begin with those of UTC, not of GPS time
-
-    /// In force, of a board that saves power at all.
-    static PowerSaveSettings of(const ConfigStore& store, const BoardProfile& board);
-};
-
 /// The states Acquisition, Tracking, optimized tracking and Inactive (NEO-M9N integration manual UBX-19014286, 3.11.2;
 /// MAX-M10S UBX-20053088, 2.7.2; u-blox 6 receiver description, 9.3). It decides; who acts on it is the receiver.
 ///

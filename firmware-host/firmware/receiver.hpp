@@ -45,6 +45,8 @@ struct RefusedOptions {
 /// that no client could change any. Nothing when it takes them, and of receivers of other makers.
 std::optional<RefusedOptions> refused_options(const BoardProfile& board, const ReceiverOptions& options);
 
+struct MakerRow;
+
 /// One receiver with all its ports.
 ///
 /// What a client configures acts as on the real one: on the messages, the speeds, and through settings() on measurement
@@ -53,6 +55,8 @@ class Receiver {
 public:
     /// @param options rates are limited to the board's maximum, and stored in whole milliseconds as real receivers do
     explicit Receiver(BoardProfile board, const ReceiverOptions& options = {});
+    /// Of another maker than those that boards name.
+    Receiver(BoardProfile board, const ReceiverOptions& options, const MakerRow& row);
     ~Receiver();
     Receiver(Receiver&&) noexcept;
     Receiver& operator=(Receiver&&) noexcept;

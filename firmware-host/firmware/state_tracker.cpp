@@ -6,8 +6,6 @@
 
 #include "base/geo/local_frame.hpp"
 #include "firmware/base_station.hpp"
-#include "firmware/config/config_keys.hpp"
-#include "firmware/config/signal_keys.hpp"
 #include "firmware/navigation_state.hpp"
 
 namespace skyloop::firmware {
@@ -46,28 +44,11 @@ void grow_accuracies(const Fix& before, double seconds, Fix& fix) {
     fix.speed_accuracy = std::min(unknown_speed_accuracy, before.speed_accuracy + MetresPerSecond(speed));
 }
 
-// A u-blox receiver counts while CFG-ODO has its odometer on, from the factory it is off; others have no such switch.
-bool odometer_is_on(const BoardProfile& board, const ConfigStore& config) {
-    return board.personality != Personality::ublox || config.flag(key::odo_use_odo);
-}
-
-// MSP and GPS_INPUT have no word for it, and a Septentrio without inertial sensors does not reckon.
-bool tells_dead_reckoning(Personality personality) {
-    return personality != Personality::msp && personality != Personality::msp_v1 &&
-           personality != Personality::mavlink && personality != Personality::sbf;
-}
-
-std::uint64_t sbas_mask(const BoardProfile& board, const ConfigStore& config) {
-    return board.personality == Personality::ublox ? config.value(key::sbas_scan_mask) : 0;
-}
-
 // A receiver looks for no satellite of a system that it does not have, or that is off, and for no SBAS satellite
 // outside of its scan mask.
-void leave_out_others(Fix& fix, const BoardProfile& board, const ConfigStore& config) {
-    const std::vector<Constellation> systems = enabled_systems(config);
-    std::erase_if(fix.satellites, [&, mask = sbas_mask(board, config)](const SatelliteStatus& s) {
-        return std::find(systems.begin(), systems.end(), s.id.constellation) == systems.end() ||
-               !in_sbas_scan_mask(s.id, mask);
+void leave_out_others(Fix& fix, const ReceiverConfig& config) {
+    std::erase_if(fix.satellites, [&](const SatelliteStatus& s) {
+        return !config.has_on(s.id.constellation) || !in_sbas_scan_mask(s.id, config.settings.sbas_scan_mask);
     });
 }
 
@@ -128,13 +109,13 @@ void StateTracker::start(GpsTime now, const Forgotten& forgotten, bool running) 
     if (running) state_.time_to_first_fix = board_.timing.cold_start;
 }
 
-const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStore& config,
+const NavigationState& StateTracker::update(const Epoch& epoch, const ReceiverConfig& config,
                                             const CorrectionStatus& corrections) {
     const Fix before = state_.epoch.fix;
     if (state_.epoch.fix.time != GpsTime{}) ++state_.epoch_index;
     state_.epoch = epoch;
     Fix& fix = state_.epoch.fix;
-    leave_out_others(fix, board_, config);
+    leave_out_others(fix, config);
     constexpr auto long_ago = std::chrono::hours(1);
     if (!booted_) booted_ = fix.time - long_ago;
     state_.since_boot = difference(fix.time, *booted_);
@@ -155,9 +136,9 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ConfigStor
         state_.ever_had_fix = state_.position_known = true;
         state_.only_place_known = false;
     }
-    learn_time(config);
+    learn_time();
     freeze_course();
-    if (odometer_is_on(board_, config)) count_distance(before);
+    if (config.counts_distance) count_distance(before);
     monitor(config);
     if (fix.has_position()) last_fix_ = fix;
     survey(config);
@@ -201,57 +182,51 @@ void StateTracker::acquire() {
     fix.satellites = std::move(found);
 }
 
-// With CFG-NAVSPG-FIXMODE 1 the height is one that the user tells, above sea level (RECEIVER.md 3.3, fixedAlt).
-void StateTracker::keep_level(const ConfigStore& config) {
-    constexpr std::uint64_t only_2d = 1;
+// A fix of two dimensions alone has a height that the user tells, above sea level (CFG-NAV5 fixedAlt).
+void StateTracker::keep_level(const ReceiverConfig& config) {
     Fix& fix = state_.epoch.fix;
-    if (!fix.has_position() || fix.type == FixType::dead_reckoning || config.value(key::navspg_fixmode) != only_2d)
-        return;
+    if (!fix.has_position() || fix.type == FixType::dead_reckoning || config.limits.mode != FixMode::only_2d) return;
     fix.type = FixType::fix_2d;
-    const Metres told(static_cast<double>(config.signed_value(key::navspg_constr_alt)) / 100);
-    fix.position.height.above_ellipsoid = told + fix.geoid_undulation;
-    fix.vertical_accuracy = Metres(std::sqrt(static_cast<double>(config.value(key::navspg_constr_altvar)) * 1e-4));
+    fix.position.height.above_ellipsoid = config.limits.height + fix.geoid_undulation;
+    fix.vertical_accuracy = Metres(std::sqrt(config.limits.height_variance_m2));
     fix.velocity.down = 0;
     if (fix.correlation) fix.correlation->part_height();
     // Nothing is solved of the height, so that there is no DOP of it, nor one of all three.
     fix.dop.gdop = fix.dop.pdop = fix.dop.vdop = std::numeric_limits<double>::quiet_NaN();
 }
 
-// Fewer satellites than the user wants for a fix at all, or too few that are strong enough (CFG-NAVSPG-INFIL_MINSVS,
-// _NCNOTHRS and _CNOTHRS; CFG-NAV5 cnoThreshNumSVs and cnoThresh).
-bool StateTracker::hears_too_little(const ConfigStore& config) const {
+// Fewer satellites than the user wants for a fix at all, or too few that are strong enough.
+bool StateTracker::hears_too_little(const ReceiverConfig& config) const {
     const Fix& fix = state_.epoch.fix;
     if (fix.type == FixType::dead_reckoning) return false;
     constexpr std::uint64_t of_any_fix = 3;
-    const std::uint64_t fewest = config.value(key::navspg_min_svs), wanted = config.value(key::navspg_cno_count);
-    if (fewest > of_any_fix && static_cast<std::uint64_t>(fix.satellites_used()) < fewest) return true;
-    const DbHz threshold(static_cast<double>(config.value(key::navspg_cno_threshold)));
+    const FixLimits& limits = config.limits;
+    const auto used = static_cast<std::uint64_t>(fix.satellites_used());
+    if (limits.least_used > of_any_fix && used < limits.least_used) return true;
     const auto strong = std::count_if(fix.satellites.begin(), fix.satellites.end(),
-                                      [&](const SatelliteStatus& s) { return s.cn0 && *s.cn0 >= threshold; });
-    return static_cast<std::uint64_t>(strong) < wanted;
+                                      [&](const SatelliteStatus& s) { return s.cn0 && *s.cn0 >= limits.strong; });
+    return static_cast<std::uint64_t>(strong) < limits.least_strong;
 }
 
-void StateTracker::keep_within_limits(const ConfigStore& config) {
+void StateTracker::keep_within_limits(const ReceiverConfig& config) {
     Fix& fix = state_.epoch.fix;
     state_.fix_ok = false;
     // A solution beyond the limits is not lost, so that nothing goes on in its place.
     if (fix.withheld) last_good_.reset();
     if (!fix.has_position()) return;
     constexpr int epochs_until_no_fix = 3;
-    const bool moves_as_expected = within_limits(board_, config.value(key::navspg_dynmodel), fix);
+    const bool moves_as_expected = within_limits(board_, static_cast<std::uint64_t>(config.limits.dynamic_model), fix);
     epochs_beyond_limits_ = moves_as_expected ? 0 : epochs_beyond_limits_ + 1;
     const bool two_d = fix.type == FixType::fix_2d;
-    const std::uint64_t mode = config.value(key::navspg_fixmode);
-    const bool mode_forbids = two_d && mode == 2;
-    const bool untold = fix.type == FixType::dead_reckoning && !tells_dead_reckoning(board_.personality);
+    const bool mode_forbids = two_d && config.limits.mode == FixMode::only_3d;
+    const bool untold = fix.type == FixType::dead_reckoning && !config.reports_dead_reckoning;
     const bool beyond = epochs_beyond_limits_ >= epochs_until_no_fix;
     if (beyond) last_good_.reset();
     if (beyond || mode_forbids || untold || hears_too_little(config)) {
         fix.type = FixType::none;
         return;
     }
-    const double p_dop = static_cast<double>(config.value(key::navspg_pdop)) / 10;
-    const double p_acc = static_cast<double>(config.value(key::navspg_pacc));
+    const double p_dop = config.limits.most_pdop, p_acc = config.limits.most_accuracy_m;
     const double accuracy = std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value());
     // Of two dimensions there is no other DOP of the position.
     const double dop = two_d ? fix.dop.hdop : fix.dop.pdop;
@@ -311,10 +286,9 @@ void StateTracker::coast(const Fix& before) {
 }
 
 // Position and speed stand still below the threshold until the antenna has left the place (RECEIVER.md 4.8).
-void StateTracker::hold(const ConfigStore& config) {
+void StateTracker::hold(const ReceiverConfig& config) {
     Fix& fix = state_.epoch.fix;
-    const double threshold = static_cast<double>(config.value(key::mot_speed_threshold)) / 100;
-    const double farthest = static_cast<double>(config.value(key::mot_distance_threshold));
+    const double threshold = config.limits.held_below.value(), farthest = config.limits.held_within.value();
     state_.position_held = false;
     if (threshold <= 0 || fix.speed.value() >= threshold) {
         held_.reset();
@@ -329,14 +303,14 @@ void StateTracker::hold(const ConfigStore& config) {
     state_.position_held = true;
 }
 
-void StateTracker::adopt(const ConfigStore& config) {
-    if (state_.survey && survey_limits(config) != state_.survey->limits()) state_.survey.reset();
+void StateTracker::adopt(const ReceiverConfig& config) {
+    if (state_.survey && config.survey != state_.survey->limits()) state_.survey.reset();
 }
 
-void StateTracker::survey(const ConfigStore& config) {
+void StateTracker::survey(const ReceiverConfig& config) {
     adopt(config);
     const Fix& fix = state_.epoch.fix;
-    const auto limits = survey_limits(config);
+    const auto limits = config.survey;
     if (!limits) return;
     if (!state_.survey) state_.survey.emplace(*limits, fix.time);
     const bool solved_in_space =
@@ -346,8 +320,8 @@ void StateTracker::survey(const ConfigStore& config) {
 
 // A base that knows where it stands solves for the time alone (RECEIVER.md 4.12). What was solved goes on beneath,
 // for the epochs after it moves again.
-void StateTracker::stand_still(const ConfigStore& config) {
-    const auto place = base_place(config, state_.survey);
+void StateTracker::stand_still(const ReceiverConfig& config) {
+    const auto place = base_place(config.place, state_.survey);
     if (!place) return;
     Fix& fix = state_.epoch.fix;
     const bool solved = fix.has_position() && fix.type != FixType::dead_reckoning;
@@ -376,6 +350,19 @@ void StateTracker::count_distance(const Fix& before) {
     state_.odometer_m += step;
     state_.odometer_total_m += step;
     state_.odometer_deviation_m += step * fix.speed_accuracy.value() / std::max(1.0, fix.speed.value());
+}
+
+// 9 wrist, 10 bike, 11 mower and 12 e-scooter move about as the nearest of the others.
+DynamicModel dynamic_model_of(std::uint64_t number) {
+    using enum DynamicModel;
+    constexpr std::array models{portable,    stationary,  stationary, pedestrian, automotive, sea,       airborne_1g,
+                                airborne_2g, airborne_4g, pedestrian, automotive, pedestrian, pedestrian};
+    return number < models.size() ? models[number] : portable;
+}
+
+std::uint64_t dynamic_model_number(DynamicModel model) {
+    constexpr std::array<std::uint64_t, 8> numbers{0, 2, 3, 4, 5, 6, 7, 8};
+    return numbers[static_cast<std::size_t>(model)];
 }
 
 }  // namespace skyloop::firmware

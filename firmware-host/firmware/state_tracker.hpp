@@ -46,30 +46,30 @@ public:
         boot_cause_ = cause;
     }
     /// The next epoch, in the receiver's own words. @param corrections of CorrectionInput at that instant
-    const NavigationState& update(const Epoch& epoch, const ConfigStore& config, const CorrectionStatus& corrections);
+    const NavigationState& update(const Epoch& epoch, const ReceiverConfig& config, const CorrectionStatus& corrections);
     [[nodiscard]] const NavigationState& state() const { return state_; }
     /// A client has changed the configuration: a survey-in ends with its mode, and begins anew with other limits.
-    void adopt(const ConfigStore& config);
+    void adopt(const ReceiverConfig& config);
     void reset_odometer() { state_.odometer_m = state_.odometer_deviation_m = 0; }
 
 private:
-    void learn_time(const ConfigStore& config);
+    void learn_time();
     [[nodiscard]] std::optional<Constellation> told_leap_seconds() const;
     [[nodiscard]] std::optional<GpsTime> first_tracking() const;
-    void keep_level(const ConfigStore& config);
-    [[nodiscard]] bool hears_too_little(const ConfigStore& config) const;
-    void keep_within_limits(const ConfigStore& config);
+    void keep_level(const ReceiverConfig& config);
+    [[nodiscard]] bool hears_too_little(const ReceiverConfig& config) const;
+    void keep_within_limits(const ReceiverConfig& config);
     [[nodiscard]] Seconds acquisition_time(StartKind kind) const;
     void begin_acquisition(GpsTime now, StartKind kind);
     void acquire();
     void coast(const Fix& before);
-    void hold(const ConfigStore& config);
+    void hold(const ReceiverConfig& config);
     void apply_corrections(const CorrectionStatus& corrections);
-    void survey(const ConfigStore& config);
-    void stand_still(const ConfigStore& config);
+    void survey(const ReceiverConfig& config);
+    void stand_still(const ReceiverConfig& config);
     void freeze_course();
     void count_distance(const Fix& before);
-    void monitor(const ConfigStore& config);
+    void monitor(const ReceiverConfig& config);
     [[nodiscard]] BandMonitor monitor_band(Decibels interference, bool watched) const;
 
     const BoardProfile& board_;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "firmware/config/config_keys.hpp"
 #include "firmware/state_tracker.hpp"
 #include "world/gnss/constants.hpp"
 
@@ -63,15 +62,9 @@ constexpr double interference_ok_db = 3, interference_warning_db = 10;
 // In captures of undisturbed receivers the indicator is 13 to 27, the gain counter 2457 to 4914, the noise 65 to 99.
 constexpr double quiet_indicator = 14, indicator_per_db = 9, quiet_gain = 4200, gain_per_db = 140, quiet_noise = 69;
 
-// u-blox from the M8 on (NAV-STATUS flags2, spoofDetState), and what Septentrio tells in RFStatus.
-bool detects_spoofing(const BoardProfile& board) {
-    if (board.personality == Personality::ublox) return board.identity.generation >= 8;
-    return board.personality == Personality::sbf;
-}
-
 }  // namespace
 
-void StateTracker::learn_time(const ConfigStore&) {
+void StateTracker::learn_time() {
     TimeKnowledge& time = state_.time;
     Fix& fix = state_.epoch.fix;
     const auto since = [&](const std::optional<GpsTime>& t) { return t ? difference(fix.time, *t).value() : -1.0; };
@@ -143,24 +136,20 @@ BandMonitor StateTracker::monitor_band(Decibels interference, bool watched) cons
     return m;
 }
 
-void StateTracker::monitor(const ConfigStore& config) {
+void StateTracker::monitor(const ReceiverConfig& config) {
     MonitorStatus& m = state_.monitors;
     const FrontEnd& front = state_.epoch.front_end;
-    const bool watched =
-        config.has(key::itfm_enable) ? config.flag(key::itfm_enable) : board_.quirks.default_interference_monitor;
-    m.upper = monitor_band(front.interference, watched);
-    if (board_.dual_frequency) m.lower = monitor_band(front.lower_interference, watched);
-    m.spoofing = detects_spoofing(board_) ? front.spoofing : SpoofingIndication::unknown;
+    m.upper = monitor_band(front.interference, config.watches_interference);
+    if (board_.dual_frequency) m.lower = monitor_band(front.lower_interference, config.watches_interference);
+    m.spoofing = config.reports_spoofing ? front.spoofing : SpoofingIndication::unknown;
 
-    const bool voltage =
-        config.has(key::ant_voltage_control) ? config.flag(key::ant_voltage_control) : board_.quirks.voltage_control;
-    if (!voltage) {
+    if (!config.watches_antenna) {
         m.antenna = AntennaStatus::unknown;
         m.antenna_power = 2;
         return;
     }
     m.antenna = front.antenna;
-    const bool off = front.antenna == AntennaStatus::short_circuit && config.flag(key::ant_power_down);
+    const bool off = front.antenna == AntennaStatus::short_circuit && config.short_ends_supply;
     m.antenna_power = off ? 0 : 1;
 }
 

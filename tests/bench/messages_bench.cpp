@@ -38,11 +38,12 @@ struct BusyReceiver {
             }
         }
     }
-    [[nodiscard]] ReportContext context() const { return {board, config, state, {}, PortId::uart1}; }
+    [[nodiscard]] ReportContext context() const { return {board, in_force, state, {}, PortId::uart1}; }
 
     BoardProfile board;
     ConfigStore config;
     NavigationState state;
+    ReceiverConfig in_force{receiver_config(config, board)};
 };
 
 // NAV-PVT, NAV-SAT, NAV-SIG and RXM-RAWX of one epoch.

@@ -189,7 +189,8 @@ void nmea_sentences(benchmark::State& state) {
     one.time = {true, true, true, true, Seconds(25e-9)};
     firmware::BoardProfile board;
     board.constellations = {gps};
-    const firmware::ConfigStore config(firmware::factory_config(board));
+    const firmware::ReceiverConfig config =
+        firmware::receiver_config(firmware::ConfigStore(firmware::factory_config(board)), board);
     const firmware::ReportContext context{board, config, one};
     std::uint64_t count = 0;
     for (auto _ : state)

@@ -17,9 +17,9 @@ using namespace std::chrono_literals;
 // The first byte chooses whose commands are understood, and the generation.
 BoardProfile fuzzed_board(std::uint8_t choice) {
     BoardProfile board = sample_ublox();
-    constexpr Personality personalities[] = {Personality::ublox, Personality::ublox, Personality::mtk,
-                                             Personality::airoha};
-    board.personality = personalities[choice % 4];
+    constexpr MakerKind personalities[] = {MakerKind::ublox, MakerKind::ublox, MakerKind::mtk,
+                                             MakerKind::airoha};
+    board.maker = personalities[choice % 4];
     board.identity.generation = 6 + choice / 4 % 5;
     board.power.save_modes = board.power.backup = true;
     for (const std::uint8_t id : std::initializer_list<std::uint8_t>{0x11, 0x3B, 0x57, 0x86})  // CFG-RXM, PM2, PWR, PMS

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using firmware::BoardProfile;
-using firmware::Personality;
+using firmware::MakerKind;
 using firmware::PortId;
 using namespace std::chrono_literals;
 
@@ -128,13 +128,13 @@ BoardProfile with_everything(BoardProfile board) {
     board.baud = 4'000'000;
     board.transmit_buffer_bytes = board.generated_ahead_bytes = 1 << 20;
     board.sbf_blocks.clear();
-    if (board.personality == Personality::sbf)
+    if (board.maker == MakerKind::sbf)
         KnownSbfBlocks::any([&]<class Block>() {
             board.sbf_blocks.emplace_back(Block::message_name);
             return false;
         });
-    if (board.personality == Personality::msp || board.personality == Personality::msp_v1 ||
-        board.personality == Personality::mavlink || board.personality == Personality::ublox)
+    if (board.maker == MakerKind::msp || board.maker == MakerKind::msp_v1 ||
+        board.maker == MakerKind::mavlink || board.maker == MakerKind::ublox)
         return board;
     board.sentences.clear();
     for (std::size_t i = 0; i < std::size(firmware::nmea_sentence_names); ++i)
@@ -144,7 +144,7 @@ BoardProfile with_everything(BoardProfile board) {
 
 void switch_everything_on(ReceiverRig& rig) {
     const BoardProfile& board = rig.receiver().board();
-    if (board.personality != Personality::ublox) return;
+    if (board.maker != MakerKind::ublox) return;
     std::map<std::uint32_t, std::uint64_t> rates;
     for (const UbxMessageId message : board.messages)
         if (const auto item = firmware::rate_key(message, PortId::uart1)) rates[*item] = 1;
@@ -154,7 +154,7 @@ void switch_everything_on(ReceiverRig& rig) {
 
 void ask_everything(ReceiverRig& rig) {
     const BoardProfile board = rig.receiver().board();
-    if (board.personality == Personality::ublox) {
+    if (board.maker == MakerKind::ublox) {
         for (const UbxMessageId message : board.polled)
             if (message.message_class < firmware::class_nmea) rig.poll(message), rig.run(50ms);
         for (const auto& [message, answer] : board.legacy)
@@ -165,7 +165,7 @@ void ask_everything(ReceiverRig& rig) {
         rig.write(to_bytes(Sentence(question).finish()));
         rig.run(50ms);
     }
-    if (board.personality != Personality::sbf) return;
+    if (board.maker != MakerKind::sbf) return;
     for (const char* const line : {"getReceiverCapabilities\n", "getSBFOutput\n", "getCOMSettings\n", "exeTea\n"}) {
         rig.write(to_bytes(line));
         rig.run(100ms);

@@ -11,6 +11,8 @@
 #include "firmware/board_profile.hpp"
 #include "firmware/config/config_store.hpp"
 #include "firmware/port_id.hpp"
+#include "firmware/receiver.hpp"
+#include "firmware/receiver_config.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
@@ -95,6 +97,13 @@ inline constexpr std::array<std::string_view, 8> numbered_talkers{"", "GP", "GL"
 
 /// The factory configuration of a board: every item that it has.
 ConfigValues factory_config(const BoardProfile& board);
+/// The same with what a run's options change of it.
+ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& options);
+
+/// What the store says. Items that are as the factory left them leave `base` as it is.
+ReceiverConfig receiver_config(const ConfigStore& store, const BoardProfile& board, const ReceiverSettings& base = {});
+/// Its part for measurement and solution.
+ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board, const ReceiverSettings& base);
 
 /// Whether values may stand together in RAM: each in its range, at least one major system enabled, a signal plan that
 /// the board can track (RECEIVER.md 4.4).

@@ -104,6 +104,17 @@ constexpr std::uint32_t inf_ubx(PortId port) { return 0x2092'0001u + static_cast
 constexpr std::uint32_t inf_nmea(PortId port) { return 0x2092'0006u + static_cast<std::uint32_t>(port); }
 }  // namespace key
 
+/// The items of a fence, CFG-GEOFENCE-USE_FENCE1 … RAD and so on. @param number 1 … most_fences
+struct FenceKeys {
+    explicit constexpr FenceKeys(std::uint32_t number)
+        : use(0x1024'0010u + 0x10 * number),
+          latitude(0x4024'0011u + 0x10 * number),
+          longitude(0x4024'0012u + 0x10 * number),
+          radius(0x4024'0013u + 0x10 * number) {}
+    std::uint32_t use, latitude, longitude, radius;
+};
+inline constexpr std::uint32_t most_fences = 4;
+
 /// Of what the navigation does: signals, filters, time pulse, corrections.
 std::span<const ConfigKey> navigation_keys();
 /// Of ports and of the protocols on them.

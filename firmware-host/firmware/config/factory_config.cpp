@@ -220,8 +220,7 @@ std::optional<bool> is_in_range_of_board(const BoardProfile& board, std::uint32_
             return value >= 1 && value <= most_cycles;
         case key::uart1_baudrate:
         case key::uart2_baudrate:
-            return board.bauds.empty() ? value >= slowest_baud && value <= fastest_baud
-                                       : std::ranges::find(board.bauds, value) != board.bauds.end();
+            return takes_baud(board, value);
         case key::nmea_protver:
             if (board.identity.generation > newest_with_nmea_2) return std::nullopt;
             return value == 21 || value == 23 || value == number_of(board.nmea_version);

@@ -14,7 +14,6 @@ using namespace std::chrono_literals;
 constexpr Nanoseconds utc_rounding = 10ms;
 
 // Keys of CFG-SIGNAL (RECEIVER.md 3.5.1).
-constexpr std::uint32_t signal_bds_enabled = 0x10310022, signal_bds_b1i = 0x1031000D, signal_bds_b1c = 0x1031000F;
 
 // GPS and QZSS: L1 C/A 0, L2 CL 3 and 5, L5 Q 7 and 9 (RECEIVER.md 5.6).
 std::uint8_t gps_like_signal(bool qzss, Signal signal) {
@@ -86,7 +85,7 @@ ReportedTime reported_time(const ReportContext& context) {
     const NavigationState& state = context.state;
     if (state.time.time)
         return {state.epoch.fix.time - clock_ahead(state), state.epoch.fix.leap_seconds, state.leap_event};
-    const auto week = static_cast<std::int64_t>(context.config.value(key::navspg_wknrollover) & 0xFFFFu);
+    const auto week = context.config.first_week;
     const std::chrono::milliseconds running(field<std::uint32_t>(state.since_start.value() * 1e3));
     return {to_gps_time({week, Nanoseconds(0)}) + running, 0, std::nullopt};
 }
@@ -109,8 +108,7 @@ UtcFields utc_fields(const ReportedTime& now) {
 std::uint8_t utc_standard(const ReportContext& context) {
     constexpr std::uint8_t unknown = 15;
     if (!context.state.time.leap_seconds) return unknown;
-    const auto configured = static_cast<std::uint8_t>(context.config.value(key::navspg_utcstandard));
-    if (configured != 0) return configured & 0x0Fu;
+    if (context.config.utc_standard != 0) return context.config.utc_standard & 0x0Fu;
     constexpr std::pair<Constellation, std::uint8_t> preferred[] = {
         {Constellation::gps, 3}, {Constellation::glonass, 6}, {Constellation::galileo, 5}, {Constellation::beidou, 7}};
     const auto& satellites = context.state.epoch.fix.satellites;
@@ -189,11 +187,6 @@ std::uint8_t frequency_id(SatelliteId satellite, Signal signal, Hertz carrier) {
     const double base = carrier_frequency(signal, 0).value();
     const double step = carrier_frequency(signal, 1).value() - base;
     return field<std::uint8_t>(std::round((carrier.value() - base) / step) + 7);
-}
-
-bool takes_b1c(const ConfigStore& config) {
-    return config.has(signal_bds_b1c) && config.flag(signal_bds_enabled) && config.flag(signal_bds_b1c) &&
-           !config.flag(signal_bds_b1i);
 }
 
 std::vector<Bytes> made_by(std::span<const UbxMaker> makers, UbxMessageId message, const ReportContext& context) {

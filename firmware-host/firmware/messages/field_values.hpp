@@ -108,8 +108,6 @@ std::optional<std::uint8_t> ubx_single_number(SatelliteId satellite);
 std::uint8_t signal_id(SatelliteId satellite, Signal signal, bool b1c_for_b1i = false);
 /// freqId: the GLONASS channel + 7; 0 of other systems.
 std::uint8_t frequency_id(SatelliteId satellite, Signal signal, Hertz carrier);
-/// True when the receiver takes BeiDou's B1C and not B1I.
-bool takes_b1c(const ConfigStore& config);
 
 /// C/N0 as a field.
 inline std::uint8_t cn0_field(const std::optional<DbHz>& cn0) { return cn0 ? field<std::uint8_t>(cn0->value()) : 0; }

@@ -52,8 +52,6 @@ const std::vector<Bytes>& EpochMessages::of(UbxMessageId message, PortId port,
 
 namespace {
 
-constexpr std::uint32_t ubx_protocol = 1, nmea_protocol = 2;
-
 // CFG-INFMSG has a bit for each level but that of the user, which always passes.
 bool passes(std::uint64_t mask, int level) { return level == text_user || (mask >> level & 1) != 0; }
 
@@ -81,16 +79,17 @@ bool is_own_sentence(const std::string& text) { return text.starts_with('$'); }
 std::vector<Bytes> make_text_message(int level, const std::string& text, const ReportContext& context) {
     const auto& [board, config, state, ports, port, following] = context;
     std::vector<Bytes> out;
-    if (level < 0 || (level > text_debug && level != text_user) || !port_is_on(config, port)) return out;
-    const bool nmea = config.flag(key::out_protocol(port, nmea_protocol));
+    if (level < 0 || (level > text_debug && level != text_user) || !config.port(port).on) return out;
+    const PortConfig& out_of = config.port(port);
+    const bool nmea = out_of.out.nmea;
     if (is_own_sentence(text)) {
         if (nmea) out.push_back(to_bytes(Sentence(text.substr(1)).finish()));
         return out;
     }
-    if (nmea && passes(config.value(key::inf_nmea(port)), level))
+    if (nmea && passes(out_of.nmea_texts, level))
         out.push_back(to_bytes(encode(Txt{nmea_talker(board, config), 1, 1, level, text}, nmea_format(board, config))));
-    const bool ubx = config.flag(key::out_protocol(port, ubx_protocol)) && level <= text_debug;
-    if (ubx && passes(config.value(key::inf_ubx(port)), level)) out.push_back(inf_frame(level, text));
+    const bool ubx = out_of.out.ubx && level <= text_debug;
+    if (ubx && passes(out_of.ubx_texts, level)) out.push_back(inf_frame(level, text));
     return out;
 }
 

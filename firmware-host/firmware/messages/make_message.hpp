@@ -32,6 +32,11 @@ public:
     /// follow, MON-COMMS by which port it leaves.
     /// @param following as ReportContext::following; has to outlive this call alone
     const std::vector<Bytes>& of(UbxMessageId message, PortId port, std::span<const UbxMessageId> following);
+    [[nodiscard]] const NavigationState& state() const { return context_.state; }
+    /// What other messages of the epoch are made from.
+    [[nodiscard]] ReportContext context(PortId port) const {
+        return {context_.board, context_.config, context_.state, context_.ports, port};
+    }
 
 private:
     ReportContext context_;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "receiver/protocol/ubx_hardware.hpp"
@@ -27,16 +26,15 @@ MonVer version(const ReportContext& context) {
     return m;
 }
 
-// Bits of MON-GNSS, and the key of CFG-SIGNAL that enables the system (RECEIVER.md 3.5.1).
+// Bits of MON-GNSS.
 struct SystemBit {
     Constellation constellation;
     std::uint8_t bit;
-    std::uint32_t key;
 };
-constexpr SystemBit system_bits[] = {{Constellation::gps, 1, 0x1031001F},
-                                     {Constellation::glonass, 2, 0x10310025},
-                                     {Constellation::beidou, 4, 0x10310022},
-                                     {Constellation::galileo, 8, 0x10310021}};
+constexpr SystemBit system_bits[] = {{Constellation::gps, 1},
+                                     {Constellation::glonass, 2},
+                                     {Constellation::beidou, 4},
+                                     {Constellation::galileo, 8}};
 
 MonGnss systems(const ReportContext& context) {
     const BoardProfile& board = context.board;
@@ -46,10 +44,8 @@ MonGnss systems(const ReportContext& context) {
     for (const SystemBit& system : system_bits) {
         const bool from_factory =
             std::ranges::find(board.constellations, system.constellation) != board.constellations.end();
-        const bool enabled =
-            context.config.has(system.key) ? is_enabled(context.config, system.constellation) : from_factory;
         if (from_factory) m.default_gnss |= system.bit;
-        if (enabled) m.enabled |= system.bit;
+        if (context.config.has_on(system.constellation)) m.enabled |= system.bit;
     }
     return m;
 }
@@ -85,15 +81,10 @@ SecUniqid unique_id(const ReportContext& context) {
     return m;
 }
 
-bool jamming_detection(const ReportContext& context) {
-    if (context.config.has(key::itfm_enable)) return context.config.flag(key::itfm_enable);
-    return context.board.quirks.default_interference_monitor;
-}
-
 std::vector<Bytes> signal_security(const ReportContext& context) {
     const MonitorStatus& monitors = context.state.monitors;
     const int spoofing = static_cast<int>(monitors.spoofing);
-    const int jam_flags = (jamming_detection(context) ? 1 : 0) | std::clamp(monitors.jamming_state(), 0, 3) << 1;
+    const int jam_flags = (context.config.watches_interference ? 1 : 0) | std::clamp(monitors.jamming_state(), 0, 3) << 1;
     if (!context.board.identity.hardware.starts_with(x20_hardware)) {
         SecSig1 m;
         m.jam_flags = static_cast<std::uint8_t>(jam_flags);

@@ -128,7 +128,7 @@ NavPosllh navigation_posllh(const ReportContext& context) {
 // A base that solves for the time alone knows its place all the same.
 bool place_is_valid(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
-    return fix.has_position() || (fix.type == FixType::time_only && base_place(context.config, context.state.survey));
+    return fix.has_position() || (fix.type == FixType::time_only && base_place(context.config.place, context.state.survey));
 }
 
 NavHpposllh navigation_hpposllh(const ReportContext& context) {

@@ -17,7 +17,6 @@ namespace skyloop::firmware {
 namespace {
 
 // CFG-ANA-USE_ANA (RECEIVER.md 3.5.1).
-constexpr std::uint32_t use_ana = 0x10230001;
 // A course that is frozen says nothing of the motion.
 constexpr std::uint32_t half_turn = 18000000;  // 1e-5 deg
 
@@ -52,7 +51,7 @@ NavCov solution_covariance(const ReportContext& context) {
     m.vel_cov = round_covariance(unknown_mps * unknown_mps, unknown_mps * unknown_mps);
     if (!estimates_known(context.state)) return m;
     put_round_covariance(fix, m);
-    if (fix.type == FixType::time_only && base_place(context.config, context.state.survey)) {
+    if (fix.type == FixType::time_only && base_place(context.config.place, context.state.survey)) {
         m.vel_cov = {};
         return m;
     }
@@ -224,7 +223,7 @@ NavGeofence fences(const ReportContext& context) {
 
 NavAopstatus autonomous_orbits(const ReportContext& context) {
     auto m = stamped<NavAopstatus>(context);
-    m.aop_cfg = context.config.flag(use_ana) ? 1 : 0;
+    m.aop_cfg = context.config.predicts_orbits ? 1 : 0;
     return m;
 }
 

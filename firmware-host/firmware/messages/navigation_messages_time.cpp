@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/navigation_state.hpp"
@@ -16,9 +15,6 @@ using namespace std::chrono_literals;
 
 // CFG-TP: periods of the pulse, µs, and frequencies, Hz, before it is locked and after; which of them counts; whether
 // there is one; the time that it is aligned to (RECEIVER.md 3.5.1).
-constexpr std::uint32_t tp_period = 0x40050002, tp_period_lock = 0x40050003, tp_frequency = 0x40050024,
-                        tp_frequency_lock = 0x40050025, tp_pulse_def = 0x20050023, tp_enabled = 0x10050007,
-                        tp_use_locked = 0x10050009, tp_time_grid = 0x2005000C;
 // Values of CFG-TP-TIMEGRID; 1 is GPS.
 constexpr std::uint64_t grid_utc = 0, grid_glonass = 2, grid_beidou = 3, grid_galileo = 4;
 // Step of the oscillator by which a pulse can be moved: RECEIVER.md 4.9 has errors of ±15 ns.
@@ -149,7 +145,7 @@ std::uint8_t leap_source_code(const ReportContext& context) {
     constexpr std::pair<Constellation, std::uint8_t> codes[] = {{gps, 2}, {galileo, 5}, {beidou, 4}, {glonass, 1}};
     for (const auto& [system, code] : codes)
         if (const auto& source = context.state.time.leap_source;
-            source ? *source == system : is_enabled(context.config, system))
+            source ? *source == system : context.config.has_on(system))
             return code;
     return codes[0].second;
 }
@@ -186,12 +182,6 @@ NavClock receiver_clock(const ReportContext& context) {
     m.f_acc = field<std::uint32_t>(fix.speed_accuracy.value() / speed_of_light * 1e12);
     return m;
 }
-
-// One of them is zero; both: there are no pulses.
-struct PulseRate {
-    Nanoseconds period{0};
-    std::int64_t hertz = 0;
-};
 
 // Pulses lie on a grid of UTC or a system's time, and are counted in GPS time, which goes on evenly over leap seconds.
 // Those of a frequency, whatever their period, begin anew with each second. The receiver's own clock is a bit before or
@@ -235,25 +225,13 @@ struct PulseGrid {
     [[nodiscard]] GpsTime next() const { return next(next(epoch)); }
 };
 
-std::uint64_t item_or(const ConfigStore& config, std::uint32_t item, std::uint64_t standard) {
-    return config.has(item) ? config.value(item) : standard;
-}
-
-PulseRate pulse_rate(const ReportContext& context) {
-    const ConfigStore& config = context.config;
-    if (item_or(config, tp_enabled, 1) == 0) return {};
-    const bool locked = item_or(config, tp_use_locked, 1) != 0 && context.state.epoch.fix.type != FixType::none;
-    if (item_or(config, tp_pulse_def, 0) == 0)
-        return {.period = std::chrono::microseconds(item_or(config, locked ? tp_period_lock : tp_period, 1'000'000))};
-    return {.hertz = static_cast<std::int64_t>(item_or(config, locked ? tp_frequency_lock : tp_frequency, 1))};
-}
-
 // Nothing: there are no pulses.
 std::optional<PulseGrid> pulse_grid(const ReportContext& context) {
     const ReportedTime reported = reported_time(context);
-    const PulseRate rate = pulse_rate(context);
+    const PulseConfig& pulses = context.config.pulses;
+    const PulseRate rate = context.state.epoch.fix.type != FixType::none ? pulses.locked : pulses.unlocked;
     if (rate.period <= Nanoseconds(0) && rate.hertz == 0) return std::nullopt;
-    const std::uint64_t base = context.config.value(tp_time_grid);
+    const std::uint64_t base = pulses.time_grid;
     PulseGrid grid{std::chrono::round<std::chrono::milliseconds>(reported.time), rate, base};
     if (base == grid_utc || base == grid_glonass) grid.leaps = counted_leap_seconds(reported);
     return grid;

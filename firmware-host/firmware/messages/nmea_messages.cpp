@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/nmea_report.hpp"
@@ -49,11 +48,10 @@ std::vector<NmeaMode> modes_of_systems(const NmeaReport& r) {
                                           Constellation::beidou};
     std::vector<NmeaMode> modes;
     std::size_t shown = r.format.version >= NmeaVersion::v4_10 ? std::size(in_order) : 2;
-    const std::vector<Constellation> enabled = enabled_systems(r.context.config);
     for (std::size_t i = 0; i < std::size(in_order); ++i) {
         const bool used = std::any_of(r.used.begin(), r.used.end(),
                                       [&](const SatelliteStatus& s) { return s.id.constellation == in_order[i]; });
-        const bool on = std::find(enabled.begin(), enabled.end(), in_order[i]) != enabled.end();
+        const bool on = r.context.config.has_on(in_order[i]);
         // Dead reckoning uses none of them, and is told of all that are on (RECEIVER.md 5.4).
         const bool reckoned = on && r.mode == NmeaMode::estimated;
         modes.push_back(used || reckoned ? r.mode : NmeaMode::none);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "firmware/config/config_handler.hpp"
-#include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/field_values.hpp"
 
 namespace skyloop::firmware {
@@ -46,46 +44,19 @@ SolutionFlags flags_beyond_limits(FixType type) {
     return {0, 1, NmeaMode::none, NmeaMode::none};
 }
 
-NmeaVersion configured_version(const BoardProfile& board, const ConfigStore& config) {
-    const auto found =
-        std::ranges::find(numbered_nmea_versions, config.value(key::nmea_protver), &NumberedNmeaVersion::item);
-    return found == numbered_nmea_versions.end() ? board.nmea_version : found->version;
-}
-
-// Two characters of CFG-NMEA-BDSTALKERID, or the board's own.
-std::string beidou_talker(const BoardProfile& board, const ConfigStore& config) {
-    const std::uint64_t configured = config.value(key::nmea_bds_talker);
-    const char first = static_cast<char>(configured & 0x7F), second = static_cast<char>(configured >> 8 & 0x7F);
-    const auto letter = [](char c) { return c >= 'A' && c <= 'Z'; };
-    return letter(first) && letter(second) ? std::string{first, second} : board.style.beidou_talker;
-}
-
-std::string own_talker(const NmeaSystem& system, const BoardProfile& board, const ConfigStore& config) {
-    if (system.talker == "GB") return beidou_talker(board, config);
+std::string own_talker(const NmeaSystem& system, const BoardProfile& board, const ReceiverConfig& config) {
+    if (system.talker == "GB") return config.nmea.beidou_talker;
     if (system.talker == "GQ") return board.style.qzss_talker;
     return std::string(system.talker);
 }
 
-// CFG-NMEA-FILT_… takes a system out of the output. NavIC has no such item, and none is not set.
-bool is_filtered(Constellation constellation, const ConfigStore& config) {
-    constexpr std::array<std::uint32_t, 7> items{key::nmea_filt_gps,
-                                                 key::nmea_filt_sbas,
-                                                 key::nmea_filt_gal,
-                                                 key::nmea_filt_bds,
-                                                 key::nmea_filt_qzss,
-                                                 key::nmea_filt_glo,
-                                                 0};
-    return config.flag(items[static_cast<std::size_t>(constellation)]);
-}
-
 void add_groups(NmeaReport& r, const std::vector<Constellation>& listed) {
     const ReportContext& c = r.context;
-    const bool main_talker_everywhere = c.config.value(key::nmea_gsv_talker) == 1;
     for (const Constellation constellation : listed) {
         const NmeaSystem system = nmea_system(constellation, r.format.version);
         const auto same = [&](const NmeaGroup& group) { return group.system == system; };
         if (std::ranges::any_of(r.groups, same)) continue;
-        r.groups.push_back({system, main_talker_everywhere ? r.talker : own_talker(system, c.board, c.config),
+        r.groups.push_back({system, c.config.nmea.main_talker_everywhere ? r.talker : own_talker(system, c.board, c.config),
                             tracked_signal_id(r, constellation, first_signal(constellation))});
     }
     std::ranges::sort(r.groups,
@@ -95,18 +66,16 @@ void add_groups(NmeaReport& r, const std::vector<Constellation>& listed) {
 // The solution weighed it and left it out. One below the mask has a residual too, but was never a candidate.
 bool is_considered(const NmeaReport& r, const SatelliteStatus& s) {
     if (!s.residual || !s.healthy) return false;
-    const ConfigStore& config = r.context.config;
-    return !config.has(key::navspg_min_elev) ||
-           s.elevation.deg() >= static_cast<double>(config.signed_value(key::navspg_min_elev));
+    return s.elevation.deg() >= r.context.config.elevation_mask.deg();
 }
 
-// With CFG-NMEA-CONSIDER satellites that the solution looked at and left out are counted too.
+// Satellites that the solution looked at and left out may be counted, too.
 void add_satellites(NmeaReport& r, const std::vector<Constellation>& enabled,
                     const std::vector<Constellation>& listed) {
     const auto within = [](const std::vector<Constellation>& list, const SatelliteStatus& s) {
         return std::ranges::find(list, s.id.constellation) != list.end();
     };
-    const bool consider = r.context.config.flag(key::nmea_consider);
+    const bool consider = r.context.config.nmea.counts_considered;
     for (const SatelliteStatus& s : r.fix().satellites) {
         if (!within(enabled, s)) continue;
         const bool counted = s.used || (consider && is_considered(r, s));
@@ -118,11 +87,11 @@ void add_satellites(NmeaReport& r, const std::vector<Constellation>& enabled,
 }
 
 void add_time_and_date(NmeaReport& r) {
-    const ConfigStore& config = r.context.config;
+    const NmeaConfig& config = r.context.config.nmea;
     const TimeKnowledge& known = r.context.state.time;
     UtcTime utc = reported_utc(r.context);
-    bool time = known.time || config.flag(key::nmea_out_invtime);
-    bool date = known.date || config.flag(key::nmea_out_invdate);
+    bool time = known.time || config.shows_invalid_time;
+    bool date = known.date || config.shows_invalid_date;
     const bool before_both = !known.time || (!known.date && !r.solved);
     if (r.context.board.style.unknown_date_is_1980 && before_both) {
         // Such receivers count from 23:59:46 of 5 January 1980 on (RECEIVER.md 5.8) until they know both, as with a
@@ -138,8 +107,8 @@ void add_time_and_date(NmeaReport& r) {
 
 void add_position_and_motion(NmeaReport& r) {
     const auto& [board, config, state, ports, port, following] = r.context;
-    const bool any = (config.flag(key::nmea_out_invfix) || state.old_position_shown) && state.position_known;
-    const bool beyond_limits = r.solved && config.flag(key::nmea_out_mskfix);
+    const bool any = (config.nmea.shows_invalid_fix || state.old_position_shown) && state.position_known;
+    const bool beyond_limits = r.solved && config.nmea.shows_masked_fix;
     if (!r.valid && !any && !beyond_limits) {
         if (!board.style.zeros_without_fix) return;
         r.speed = MetresPerSecond(0);
@@ -152,30 +121,27 @@ void add_position_and_motion(NmeaReport& r) {
     const bool frozen = state.course_is_frozen || fix.speed < board.course_min_speed;
     if (board.style.course_always)
         r.course = state.course.value_or(fix.course);
-    else if (!frozen || config.flag(key::nmea_out_frozencog))
+    else if (!frozen || config.nmea.shows_frozen_course)
         r.course = state.course;
 }
 
 }  // namespace
 
-std::string nmea_talker(const BoardProfile& board, const ConfigStore& config) {
-    const std::uint64_t number = config.value(key::nmea_main_talker);
-    if (number < numbered_talkers.size() && !numbered_talkers[number].empty())
-        return std::string(numbered_talkers[number]);
-    if (!board.main_talker.empty()) return board.main_talker;
-    const NmeaVersion version = configured_version(board, config);
-    if (version == NmeaVersion::v2_1 || config.flag(key::nmea_out_onlygps)) return "GP";
+std::string nmea_talker(const BoardProfile& board, const ReceiverConfig& config) {
+    using enum Constellation;
+    if (!config.nmea.talker.empty()) return config.nmea.talker;
+    if (config.nmea.version == NmeaVersion::v2_1 || config.nmea.gps_only) return "GP";
     std::string talker;
-    for (const SystemKeys& system : system_keys_of_signals) {
-        if (!system.is_major || !is_enabled(config, system.constellation)) continue;
+    for (const Constellation system : {gps, galileo, beidou, glonass}) {
+        if (!config.has_on(system)) continue;
         if (!talker.empty()) return "GN";
-        talker = own_talker(nmea_system(system.constellation, version), board, config);
+        talker = own_talker(nmea_system(system, config.nmea.version), board, config);
     }
     return talker.empty() ? "GP" : talker;
 }
 
 int tracked_signal_id(const NmeaReport& report, Constellation constellation, Signal signal) {
-    const bool b1c = signal == Signal::b1i && takes_b1c(report.context.config);
+    const bool b1c = signal == Signal::b1i && report.context.config.settings.beidou_b1c;
     return nmea_signal_id(constellation, b1c ? Signal::l1 : signal, report.format.version);
 }
 
@@ -186,12 +152,12 @@ std::optional<Dop> shown_dops(const NmeaReport& report) {
     return Dop{.pdop = not_computed, .hdop = not_computed, .vdop = not_computed};
 }
 
-NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config) {
+NmeaFormat nmea_format(const BoardProfile& board, const ReceiverConfig& config) {
     constexpr int compatible_time_decimals = 3, precise_coordinate_decimals = 7, precise_altitude_decimals = 3;
-    NmeaFormat format{.version = configured_version(board, config),
+    NmeaFormat format{.version = config.nmea.version,
                       .time_decimals = board.time_decimals,
                       .coordinate_decimals = board.coordinate_decimals,
-                      .limit_82 = config.flag(key::nmea_limit82),
+                      .limit_82 = config.nmea.limit_82,
                       .speed_decimals = board.style.speed_decimals,
                       .course_decimals = board.style.course_decimals,
                       .dop_decimals = board.style.dop_decimals,
@@ -199,8 +165,8 @@ NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config) {
                       .units_always = board.style.zeros_without_fix,
                       .deviations_padded = board.style.gst_padded,
                       .no_station = board.style.station_field};
-    if (config.flag(key::nmea_compat)) format.time_decimals = compatible_time_decimals;
-    if (config.flag(key::nmea_highprec)) {
+    if (config.nmea.compatible) format.time_decimals = compatible_time_decimals;
+    if (config.nmea.high_precision) {
         format.coordinate_decimals = precise_coordinate_decimals;
         format.altitude_decimals = precise_altitude_decimals;
     }
@@ -216,10 +182,8 @@ NmeaReport nmea_report(const ReportContext& context) {
     const auto& [board, config, state, ports, port, following] = context;
     NmeaReport r{.context = context,
                  .format = nmea_format(board, config),
-                 .numbering = board.satellite_numbering,
+                 .numbering = config.nmea.numbering,
                  .talker = nmea_talker(board, config)};
-    if (config.has(key::nmea_svnumbering))
-        r.numbering = config.flag(key::nmea_svnumbering) ? NmeaNumbering::extended : NmeaNumbering::strict;
     const FixType type = r.fix().type;
     r.solved = r.fix().has_position();
     r.valid = r.solved && state.fix_ok;
@@ -228,11 +192,11 @@ NmeaReport nmea_report(const ReportContext& context) {
     r.fix_mode = flags.fix_mode;
     r.mode = flags.mode;
     r.course_mode = flags.course_mode;
-    std::vector<Constellation> enabled = enabled_systems(config), listed;
-    if (config.flag(key::nmea_out_onlygps))
+    std::vector<Constellation> enabled = config.systems, listed;
+    if (config.nmea.gps_only)
         std::erase_if(enabled, [](Constellation c) { return c != Constellation::gps; });
     for (const Constellation c : enabled)
-        if (!is_filtered(c, config)) listed.push_back(c);
+        if (!config.nmea.left_out.contains(c)) listed.push_back(c);
     add_groups(r, listed);
     add_satellites(r, enabled, listed);
     add_time_and_date(r);

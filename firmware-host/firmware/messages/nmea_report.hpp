@@ -61,9 +61,9 @@ std::optional<Dop> shown_dops(const NmeaReport& report);
 std::vector<Bytes> make_nmea_message(UbxMessageId message, const NmeaReport& report);
 
 /// Digits, version and forms of fields, from configuration and board.
-NmeaFormat nmea_format(const BoardProfile& board, const ConfigStore& config);
+NmeaFormat nmea_format(const BoardProfile& board, const ReceiverConfig& config);
 /// The talker of all sentences but GSV: configured, the board's, or by the enabled systems (RECEIVER.md 5.2).
-std::string nmea_talker(const BoardProfile& board, const ConfigStore& config);
+std::string nmea_talker(const BoardProfile& board, const ReceiverConfig& config);
 /// UTC of the epoch as sentences write it, rounded once (RECEIVER.md 4.9).
 UtcTime reported_utc(const ReportContext& context);
 

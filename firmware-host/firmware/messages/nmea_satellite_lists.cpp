@@ -100,14 +100,11 @@ SignalGroups lists_of(const NmeaReport& r, const NmeaGroup& group) {
 
 // A group without satellites is one sentence. M10 calls the signal of GPS in it by its number (RECEIVER.md 5.5).
 int signal_of_stub(const NmeaReport& r, const NmeaGroup& group) {
-    constexpr int m10 = 10;
-    const BoardProfile& board = r.context.board;
-    const bool by_number = board.personality == Personality::ublox && board.identity.generation >= m10;
-    return by_number && group.system.talker == "GP" ? group.first_signal_id : 0;
+    return r.context.config.nmea.numbers_empty_lists && group.system.talker == "GP" ? group.first_signal_id : 0;
 }
 
 void append_pages(std::vector<Gsv>& out, const NmeaReport& r, const NmeaGroup& group, const SignalGroups& lists) {
-    const std::uint64_t most = r.context.config.value(key::nmea_maxsvs);
+    const std::uint64_t most = r.context.config.nmea.most_listed;
     // Signal 0 comes last (capture of F9R).
     std::vector<int> order;
     for (const auto& [id, list] : lists)
@@ -137,11 +134,9 @@ std::vector<Gsv> gsv_messages(const NmeaReport& r) {
 }
 
 std::vector<Gsa> gsa_messages(const NmeaReport& r) {
-    constexpr std::uint64_t automatic = 3;
     Gsa m;
     m.talker = r.talker;
-    m.automatic =
-        !r.context.config.has(key::navspg_fixmode) || r.context.config.value(key::navspg_fixmode) == automatic;
+    m.automatic = r.context.config.limits.mode == FixMode::automatic;
     m.fix_mode = r.fix_mode;
     if (const auto dops = shown_dops(r)) {
         m.pdop = dops->pdop;

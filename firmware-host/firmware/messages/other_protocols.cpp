@@ -70,20 +70,6 @@ void put_mavlink_estimates(const Fix& fix, MavlinkGpsInput& to) {
     to.vert_accuracy = static_cast<float>(fix.vertical_accuracy.value());
 }
 
-// A ground station takes a component for alive by a heartbeat a second, whatever the rate of its data.
-std::vector<Bytes> mavlink_messages(const NavigationState& state, MavlinkSent& sent) {
-    MavlinkSource source;
-    std::vector<Bytes> frames;
-    const auto add = [&](const auto& message) {
-        source.sequence = sent.sequence++;
-        frames.push_back(encode_mavlink(source, message));
-    };
-    const auto second = static_cast<std::int64_t>(std::floor(state.since_boot.value()));
-    if (std::exchange(sent.beat_second, second) != second) add(MavlinkHeartbeat{});
-    add(mavlink_gps_input(state));
-    return frames;
-}
-
 }  // namespace
 
 MspSensorGps msp_sensor_gps(const NavigationState& state) {
@@ -140,18 +126,18 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     return message;
 }
 
-std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context, MavlinkSent& sent) {
-    const NavigationState& state = context.state;
-    switch (personality) {
-        case Personality::msp:
-            return {encode_msp(msp_sensor_gps(state))};
-        case Personality::msp_v1:
-            return {encode_msp(msp_set_raw_gps(state))};
-        case Personality::mavlink:
-            return mavlink_messages(state, sent);
-        default:
-            return {};
-    }
+// A ground station takes a component for alive by a heartbeat a second, whatever the rate of its data.
+std::vector<Bytes> mavlink_messages(const NavigationState& state, MavlinkSent& sent) {
+    MavlinkSource source;
+    std::vector<Bytes> frames;
+    const auto add = [&](const auto& message) {
+        source.sequence = sent.sequence++;
+        frames.push_back(encode_mavlink(source, message));
+    };
+    const auto second = static_cast<std::int64_t>(std::floor(state.since_boot.value()));
+    if (std::exchange(sent.beat_second, second) != second) add(MavlinkHeartbeat{});
+    add(mavlink_gps_input(state));
+    return frames;
 }
 
 }  // namespace skyloop::firmware

@@ -18,10 +18,8 @@ struct MavlinkSent {
     std::optional<std::int64_t> beat_second{};  ///< of the receiver's time since its start: of the last HEARTBEAT
 };
 
-/// What a receiver of this personality sends at every epoch, in order: msp MSP2_SENSOR_GPS; msp_v1 MSP_SET_RAW_GPS;
-/// mavlink GPS_INPUT, and HEARTBEAT before the first one of each second. Nothing for the others; what sbf sends, its
-/// streams say (septentrio/console.hpp).
-std::vector<Bytes> make_protocol_messages(Personality personality, const ReportContext& context, MavlinkSent& sent);
+/// GPS_INPUT, and HEARTBEAT before the first one of each second.
+std::vector<Bytes> mavlink_messages(const NavigationState& state, MavlinkSent& sent);
 
 /// Its values without a fix: fix type 0, the last position, zeros before the first, velocity 0, accuracies 65535, DOP
 /// 99.99; week 65535 while time is not known. The position stays since the receivers that speak it, ArduPilot's

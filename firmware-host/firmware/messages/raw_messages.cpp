@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "firmware/config/signal_keys.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/navigation_state.hpp"
 #include "receiver/protocol/ubx_raw.hpp"
@@ -45,7 +44,7 @@ RxmRawxItem raw_measurement(const Observation& o, const ReportContext& context) 
     item.gnss_id = gnss_id(o.satellite.constellation);
     item.sv_id = sv_id(o.satellite);
     item.sig_id = context.board.identity.generation <= 8 ? std::uint8_t{0}
-                                                         : signal_id(o.satellite, o.signal, takes_b1c(context.config));
+                                                         : signal_id(o.satellite, o.signal, context.config.settings.beidou_b1c);
     item.freq_id = frequency_id(o.satellite, o.signal, o.carrier);
     item.locktime =
         o.carrier_phase ? std::min(longest_lock_ms, field<std::uint16_t>(o.lock_time.value() * 1e3)) : std::uint16_t{0};
@@ -153,14 +152,14 @@ RxmMeasx code_measurements(const ReportContext& context) {
     if (state.time.time) {
         m.gps_tow = m.qzss_tow = tow_ms(time);
         m.bds_tow = tow_ms(time - bdt_lag);
-        if (context.board.identity.generation >= 9 && is_enabled(context.config, Constellation::galileo))
+        if (context.board.identity.generation >= 9 && context.config.has_on(Constellation::galileo))
             m.gal_tow = m.gps_tow;
         m.glo_tow = tow_ms(time + 3h - std::chrono::seconds(state.epoch.fix.leap_seconds));
         const std::uint16_t accuracy = field<std::uint16_t>(state.time.accuracy.value() * 1e3 * 16);
         m.gps_tow_acc = m.glo_tow_acc = m.bds_tow_acc = m.qzss_tow_acc = accuracy;
         m.flags = 2;
     }
-    const bool b1c = takes_b1c(context.config);
+    const bool b1c = context.config.settings.beidou_b1c;
     for (const Observation& o : state.epoch.observations.signals)
         if (o.pseudorange) m.satellites.push_back(code_measurement(o, b1c));
     return m;
@@ -178,12 +177,12 @@ std::uint8_t data_signal_id(const Subframe& subframe, const ReportContext& conte
     constexpr std::uint8_t e1_b = 1, e5b_i = 5;
     if (subframe.satellite.constellation == Constellation::galileo)
         return subframe.signal == Signal::e5b ? e5b_i : e1_b;
-    return signal_id(subframe.satellite, subframe.signal, takes_b1c(context.config));
+    return signal_id(subframe.satellite, subframe.signal, context.config.settings.beidou_b1c);
 }
 
 std::vector<Bytes> received_subframes(const ReportContext& context) {
     std::vector<Bytes> frames;
-    const bool b1c = takes_b1c(context.config);
+    const bool b1c = context.config.settings.beidou_b1c;
     for (const Subframe& subframe : context.state.epoch.subframes) {
         // D1 and D2 come by B1I: on B1C there is B-CNAV1, which is not made.
         if (b1c && subframe.signal == Signal::b1i) continue;

@@ -16,7 +16,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint32_t rtcm_station_out = 0x30090001;  // CFG-RTCM-DF003_OUT
 
 // The messages of observations by their ids in class F5, which are what their numbers have beyond 1000.
 struct MsmOutput {
@@ -47,10 +46,6 @@ int msm_signal(Constellation constellation, Signal signal) {
         default:
             return 0;
     }
-}
-
-int rtcm_station_of(const ReportContext& context) {
-    return context.config.has(rtcm_station_out) ? static_cast<int>(context.config.value(rtcm_station_out) & 0xFFF) : 0;
 }
 
 GpsTime msm_time(const ReportContext& context) {
@@ -120,7 +115,7 @@ bool more_follow(const ReportContext& context) {
 Bytes observations_message(const MsmOutput& output, const ReportContext& context) {
     Rtcm3MsmObservations message;
     message.number = 1000 + output.id;
-    message.station = rtcm_station_of(context);
+    message.station = context.config.station;
     message.epoch = msm_epoch(output.constellation, context);
     message.more = more_follow(context);
     message.cells = msm_cells(output.constellation, context);
@@ -129,10 +124,10 @@ Bytes observations_message(const MsmOutput& output, const ReportContext& context
 
 // Only a receiver that knows where it stands says so (CFG-TMODE).
 std::vector<Bytes> station_message(const ReportContext& context) {
-    const auto place = base_place(context.config, context.state.survey);
+    const auto place = base_place(context.config.place, context.state.survey);
     if (!place) return {};
     Rtcm3Station station;
-    station.station = rtcm_station_of(context);
+    station.station = context.config.station;
     const auto metres = place->position.vector();
     for (std::size_t i = 0; i < 3; ++i)
         station.position[i] = std::llround(metres[static_cast<Eigen::Index>(i)] * 1e4);
@@ -148,7 +143,7 @@ std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& 
     if (message.id == id_1230) {
         // As a ZED-F9P sends it: the observations are aligned, and no bias is told.
         Rtcm3GlonassBiases biases;
-        biases.station = rtcm_station_of(context);
+        biases.station = context.config.station;
         biases.aligned = true;
         return {encode(biases)};
     }

@@ -84,9 +84,7 @@ NavSvinfo channels(const ReportContext& context) {
 // 0 unknown, 1 below the horizon, 2 above it, 3 above the elevation mask.
 int visibility(const SatelliteStatus& s, const ReportContext& context) {
     if (!direction_known(s, context.state)) return 0;
-    const double mask = context.config.has(key::navspg_min_elev)
-                            ? static_cast<double>(context.config.signed_value(key::navspg_min_elev))
-                            : context.board.elevation_mask.deg();
+    const double mask = context.config.elevation_mask.deg();
     return s.elevation.deg() < 0 ? 1 : s.elevation.deg() < mask ? 2 : 3;
 }
 
@@ -189,7 +187,6 @@ std::uint8_t signal_quality(const Observation& observation) {
 
 namespace {
 
-constexpr std::uint32_t l5_as_healthy_as_l1 = 0x10320001;  // CFG-SIGNAL-HEALTH_L5
 
 // One signal, from a measurement or from the satellite alone.
 struct SignalReport {
@@ -203,9 +200,9 @@ struct SignalReport {
 
 // GPS says of its L5 that it is not in operation yet. Who wants it all the same overrides that (DAN-F10N integration
 // manual, table 3; ArduPilot's driver option "override L5 health").
-bool is_unhealthy_l5(const Observation& o, const ConfigStore& config) {
+bool is_unhealthy_l5(const Observation& o, const ReceiverConfig& config) {
     return o.satellite.constellation == Constellation::gps && o.signal == Signal::l5 &&
-           config.has(l5_as_healthy_as_l1) && !config.flag(l5_as_healthy_as_l1);
+           !config.trusts_l5;
 }
 
 // Bits: 0-1 health, 3-5 range, carrier and Doppler used, 6-8 corrections of them. Captured: 0x29 used, 0x169 with SBAS,
@@ -257,7 +254,7 @@ NavSigItem signal_item(const SignalReport& report, const ReportContext& context)
     NavSigItem item;
     item.gnss_id = gnss_id(s.id.constellation);
     item.sv_id = sv_id(s.id);
-    item.sig_id = signal_id(s.id, signal, takes_b1c(context.config));
+    item.sig_id = signal_id(s.id, signal, context.config.settings.beidou_b1c);
     item.freq_id = frequency_id(s.id, signal, o != nullptr ? o->carrier : carrier_frequency(signal));
     if (s.residual) item.pr_res = field<std::int16_t>(s.residual->value() * 10);
     item.cno = o != nullptr ? field<std::uint8_t>(o->cn0.value()) : cn0_field(s.cn0);

@@ -6,14 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "base/core/number_text.hpp"
-#include "firmware/config/config_keys.hpp"
-#include "firmware/config/legacy_keys.hpp"
-#include "firmware/config/signal_keys.hpp"
+#include "firmware/state_tracker.hpp"
 #include "firmware/septentrio/rover_and_station.hpp"
 
 namespace skyloop::firmware {
+
+using namespace std::chrono_literals;
 
 struct SeptentrioConsole::Command {
     std::string line;  ///< as it was written
@@ -43,13 +44,6 @@ constexpr std::array system_names{
     SystemName{Constellation::navic, "NAVIC", 'I'},
 };
 
-// The item that switches a system on; nothing for one that this receiver does not have.
-std::optional<std::uint32_t> switch_of(const SystemName& system, const ConfigStore& store) {
-    for (const SystemKeys& keys : system_keys_of_signals)
-        if (keys.constellation == system.constellation && store.has(keys.enable)) return keys.enable;
-    return std::nullopt;
-}
-
 const SettingGroup& group_of(std::string_view name) {
     return *std::find_if(setting_groups().begin(), setting_groups().end(),
                          [&](const SettingGroup& group) { return group.name == name; });
@@ -63,14 +57,10 @@ bool names_system(const std::vector<std::string>& words, const SystemName& syste
 }
 
 bool names_signal(std::string_view signals, Constellation system) {
-    return std::any_of(signal_keys.begin(), signal_keys.end(), [&](const SignalKey& key) {
-        const std::string_view name = signal_name(key.signal);
-        return key.signal.constellation == system && !name.empty() && lists(signals, name);
+    return std::ranges::any_of(septentrio_signals(), [&](const NamedSignal& known) {
+        return known.signal.constellation == system && lists(signals, known.name);
     });
 }
-
-// Of the two items that stand for BeiDou's measured signal on L1 this receiver uses the other.
-constexpr std::uint32_t b1c_for_b1i = 0x1031000F;
 
 // The guide's "exact copy of the command" in the form of each kind of answer.
 std::string told(char kind, const std::string& line, const std::vector<std::string>& states) {
@@ -97,39 +87,34 @@ StartKind start_after(const std::string& erased) {
 
 }  // namespace
 
-SeptentrioConsole::SeptentrioConsole(const BoardProfile& board, const ConfigStore& store)
-    : board_(board), own_period_ms_(store.value(key::rate_meas)) {
-    adopt(store);
+SeptentrioConsole::SeptentrioConsole(const BoardProfile& board, const SeptentrioTarget& start) : board_(board), start_(start) {
+    adopt();
     factory_ = at_start_ = state_.settings;
 }
 
 // The board or a scenario may have it begin in another way than the factory's settings say.
-void SeptentrioConsole::adopt(const ConfigStore& store) {
+void SeptentrioConsole::adopt() {
     SeptentrioSettings& settings = state_.settings;
     if (!board_.sbf_blocks.empty())
         settings.set(group_of("SBFOutput"),
                      {"Stream1", "COM1", fmt::format("{}", fmt::join(board_.sbf_blocks, "+")), "OnChange"});
-    const auto speed = [&](const char* port, std::uint32_t item) {
-        settings.set(group_of("COMSettings"), {port, fmt::format("baud{}", store.value(item))});
-    };
-    speed("COM1", key::uart1_baudrate);
-    speed("COM2", key::uart2_baudrate);
-    settings.set(group_of("ElevationMask"), {"PVT", fmt::format("{}", store.signed_value(key::navspg_min_elev))});
-    std::string systems, signals;
+    for (const PortId port : board_.ports)
+        if (is_uart(port))
+            settings.set(group_of("COMSettings"), {std::string(descriptor_of(port)),
+                                                   fmt::format("baud{}", start_.config.port(port).baud)});
+    settings.set(group_of("ElevationMask"), {"PVT", fmt::format("{}", std::lround(start_.config.elevation_mask.deg()))});
+    std::vector<std::string_view> systems, signals;
     for (const SystemName& system : system_names)
-        if (const auto item = switch_of(system, store); item && store.flag(*item))
-            systems += fmt::format("{}{}", systems.empty() ? "" : "+", system.name);
-    for (const SignalKey& signal : signal_keys) {
-        const std::string_view name = signal_name(signal.signal);
-        if (name.empty() || signal.enable == b1c_for_b1i || !store.has(signal.enable) || !store.flag(signal.enable))
-            continue;
-        signals += fmt::format("{}{}", signals.empty() ? "" : "+", name);
-    }
+        if (start_.systems.contains(system.constellation)) systems.push_back(system.name);
+    for (const NamedSignal& known : septentrio_signals())
+        if (start_.signals.contains(known.signal)) signals.push_back(known.name);
     if (systems.empty() || signals.empty()) return;
-    settings.set(group_of("SatelliteTracking"), {systems});
-    settings.set(group_of("SatelliteUsage"), {systems});
-    settings.set(group_of("SignalTracking"), {signals});
-    settings.set(group_of("SignalUsage"), {signals, signals});
+    const std::string system_words = fmt::format("{}", fmt::join(systems, "+")),
+                      signal_words = fmt::format("{}", fmt::join(signals, "+"));
+    settings.set(group_of("SatelliteTracking"), {system_words});
+    settings.set(group_of("SatelliteUsage"), {system_words});
+    settings.set(group_of("SignalTracking"), {signal_words});
+    settings.set(group_of("SignalUsage"), {signal_words, signal_words});
 }
 
 bool SeptentrioConsole::lets_in(PortId port, std::string_view input) const {
@@ -139,9 +124,7 @@ bool SeptentrioConsole::lets_in(PortId port, std::string_view input) const {
     return directions.empty() || same_word(directions[0], "auto") || same_word(directions[0], input);
 }
 
-bool SeptentrioConsole::hears_corrections(PortId port) const { return lets_in(port, "RTCMv3"); }
-
-CommandOutcome SeptentrioConsole::execute(const std::string& line, ConfigStore& store, PortId from) {
+CommandOutcome SeptentrioConsole::execute(const std::string& line, SeptentrioTarget& to, PortId from) {
     CommandOutcome outcome;
     const std::string_view descriptor = descriptor_of(from);
     if (descriptor.empty()) return outcome;
@@ -157,37 +140,37 @@ CommandOutcome SeptentrioConsole::execute(const std::string& line, ConfigStore& 
     }
     Command command{line, words.front(), {words.begin() + 1, words.end()}, from};
     state_.commands = state_.commands == 255 ? std::uint8_t{1} : static_cast<std::uint8_t>(state_.commands + 1);
-    const std::string text = answer(command, store, outcome);
-    outcome.answers.push_back(to_bytes(text + (outcome.restart ? "STOP>" : prompt)));
+    const std::string text = answer(command, to, outcome);
+    outcome.answers.push_back(to_bytes(text + (outcome.reset ? "STOP>" : prompt)));
     return outcome;
 }
 
-std::string SeptentrioConsole::answer(const Command& command, ConfigStore& store, CommandOutcome& outcome) {
+std::string SeptentrioConsole::answer(const Command& command, SeptentrioTarget& to, CommandOutcome& outcome) {
     for (const SettingGroup& group : setting_groups()) {
         if (command.is(group.get, fmt::format("get{}", group.name)))
             return setting_told(command.line, state_.settings.get(group, command.arguments));
         if (!command.is(group.set, fmt::format("set{}", group.name))) continue;
         const SettingAnswer answer = state_.settings.set(group, command.arguments);
         if (!answer.error.empty()) return setting_told(command.line, answer);
-        apply(store);
-        if (group.name == "COMSettings") apply_speeds(store);
-        if (group.name == "ReceiverDynamics") apply_motion(store);
-        if (group.name == "NMEATalkerID") apply_talker(store);
+        apply(to);
+        if (group.name == "COMSettings") apply_speeds(to);
+        if (group.name == "ReceiverDynamics") apply_motion(to);
+        if (group.name == "NMEATalkerID") apply_talker(to);
         if (group.name == "SBFOutput") state_.told_records.clear();
         if (group.name == "SBFOutput") state_.told_setup.reset();
         return setting_told(command.line, answer);
     }
-    return act(command, store, outcome);
+    return act(command, outcome);
 }
 
 // What is no setting.
-std::string SeptentrioConsole::act(const Command& command, const ConfigStore& store, CommandOutcome& outcome) {
+std::string SeptentrioConsole::act(const Command& command, CommandOutcome& outcome) {
     const auto done = [&](const std::string& state) { return told(':', command.line, {state}); };
     const auto arguments = fmt::format("{}", fmt::join(command.arguments, ", "));
     if (command.is("gecm", "getEchoMessage") || command.is("eecm", "exeEchoMessage"))
         return done("EchoMessage, " +
                     (arguments.empty() ? fmt::format("{}, , none", descriptor_of(command.from)) : arguments));
-    if (command.is("grc", "getReceiverCapabilities")) return done(capabilities(store));
+    if (command.is("grc", "getReceiverCapabilities")) return done(capabilities());
     if (command.is("gri", "getReceiverInterface"))
         return done(fmt::format("ReceiverInterface, RxName, {}", board_.identity.hardware));
     if (command.is("lif", "lstInternalFile")) {
@@ -224,19 +207,17 @@ std::string SeptentrioConsole::act_on_receiver(const Command& command, CommandOu
     }
     if (command.is("erst", "exeResetReceiver")) {
         if (const auto why = wrong("ResetReceiver", {"Level", "EraseMemory"}); !why.empty()) return refused(why);
-        outcome.restart = start_after(second);
+        outcome.reset = Reset{Reset::Kind::software, Forgotten::of(start_after(second))};
         return done("ResetReceiver");
     }
     return refused("ASCII commands: Invalid command!");
 }
 
 // Antennas, signals, ports, abilities, and the shortest periods of measurements and solutions, ms.
-std::string SeptentrioConsole::capabilities(const ConfigStore& store) const {
+std::string SeptentrioConsole::capabilities() const {
     std::vector<std::string_view> signals, ports;
-    for (const SignalKey& key : signal_keys)
-        if (const auto name = signal_name(key.signal);
-            !name.empty() && key.enable != b1c_for_b1i && store.has(key.enable))
-            signals.push_back(name);
+    for (const NamedSignal& known : septentrio_signals())
+        signals.push_back(known.name);
     for (const PortId port : board_.ports)
         if (const auto name = descriptor_of(port); !name.empty()) ports.push_back(name);
     const auto shortest = static_cast<int>(1000 / board_.max_rate_hz);
@@ -254,105 +235,146 @@ std::string SeptentrioConsole::identification() const {
         board_.identity.hardware);
 }
 
-void SeptentrioConsole::restart(ConfigStore& store) {
+void SeptentrioConsole::restart(SeptentrioTarget& to) {
     state_ = {at_start_, true, state_.commands};
-    apply(store);
-    if (speeds_saved_) apply_speeds(store);
+    to = start_;
+    apply(to);
+    if (speeds_saved_) apply_speeds(to);
     const auto is_changed = [&](const char* name) {
         return at_start_.values(name) != SeptentrioSettings().values(name);
     };
-    if (is_changed("ReceiverDynamics")) apply_motion(store);
-    if (is_changed("NMEATalkerID")) apply_talker(store);
+    if (is_changed("ReceiverDynamics")) apply_motion(to);
+    if (is_changed("NMEATalkerID")) apply_talker(to);
+}
+
+void SeptentrioConsole::forget(SeptentrioTarget& to) {
+    state_.settings = at_start_ = factory_;
+    speeds_saved_ = false;
+    to = start_;
+    apply(to);
 }
 
 // What measurement and solution must know.
-void SeptentrioConsole::apply(ConfigStore& store) const {
+void SeptentrioConsole::apply(SeptentrioTarget& to) const {
     const SeptentrioSettings& settings = state_.settings;
-    const auto period = std::max(wanted_period_ms(settings, own_period_ms_).value_or(own_period_ms_),
-                                 static_cast<std::uint64_t>(1000 / board_.max_rate_hz));
-    store.set(in_ram, key::rate_meas, period);
+    const auto own = static_cast<std::uint64_t>(start_.config.settings.navigation_period / 1ms);
+    const auto period =
+        std::max(wanted_period_ms(settings, own).value_or(own), static_cast<std::uint64_t>(1000 / board_.max_rate_hz));
+    set_navigation_period(to.config.settings, feasible_period(std::chrono::milliseconds(period), 1, board_), board_);
     const auto mask = [&](const char* engine) {
         return number_in<int>(settings.values("ElevationMask", engine).front()).value_or(-90);
     };
-    store.set(in_ram, key::navspg_min_elev, static_cast<std::uint8_t>(std::max(mask("Tracking"), mask("PVT"))));
-    apply_systems(store);
-    apply_signals(store);
-    apply_station(store);
+    const Angle elevation = Angle::degrees(std::max(mask("Tracking"), mask("PVT")));
+    const bool as_at_start = elevation.deg() == start_.config.elevation_mask.deg();
+    to.config.elevation_mask = elevation;
+    to.config.settings.elevation_mask = as_at_start ? start_.config.settings.elevation_mask : elevation;
+    to.config.settings.subframes = wants_messages(settings);
+    for (const PortId port : board_.ports)
+        to.config.ports[static_cast<std::size_t>(port)].in.rtcm3 = lets_in(port, "RTCMv3");
+    apply_systems(to);
+    apply_signals(to);
+    apply_station(to);
 }
 
 // Until it is told how it moves, the receiver goes by what the run says.
-void SeptentrioConsole::apply_motion(ConfigStore& store) const {
-    if (const auto model = model_of_motion(state_.settings.values("ReceiverDynamics")[1]))
-        store.set(in_ram, key::navspg_dynmodel, *model);
+void SeptentrioConsole::apply_motion(SeptentrioTarget& to) const {
+    const auto model = model_of_motion(state_.settings.values("ReceiverDynamics")[1]);
+    if (!model) return;
+    to.config.limits.dynamic_model = static_cast<int>(*model);
+    const bool as_at_start = to.config.limits.dynamic_model == start_.config.limits.dynamic_model;
+    to.config.settings.dynamic_model =
+        as_at_start ? start_.config.settings.dynamic_model : dynamic_model_of(*model);
 }
 
-// CFG-NMEA-MAINTALKERID.
-void SeptentrioConsole::apply_talker(ConfigStore& store) const {
+void SeptentrioConsole::apply_talker(SeptentrioTarget& to) const {
     constexpr std::array<std::string_view, 4> talkers{"auto", "GP", "GL", "GN"};
     const std::string& wanted = state_.settings.values("NMEATalkerID").front();
-    const auto found = std::find_if(talkers.begin(), talkers.end(), [&](auto word) { return same_word(word, wanted); });
-    if (found != talkers.end())
-        store.set(in_ram, key::nmea_main_talker, static_cast<std::uint64_t>(found - talkers.begin()));
+    const auto found = std::ranges::find_if(talkers, [&](auto word) { return same_word(word, wanted); });
+    if (found == talkers.end()) return;
+    to.config.nmea.talker = found == talkers.begin() ? board_.main_talker : std::string(*found);
 }
 
 // Of a system that is tracked one signal at least stays.
-void SeptentrioConsole::apply_signals(ConfigStore& store) const {
+void SeptentrioConsole::apply_signals(SeptentrioTarget& to) const {
     const std::string& wanted = state_.settings.values("SignalTracking").front();
-    for (const SystemKeys& system : system_keys_of_signals) {
-        std::vector<std::pair<std::uint32_t, bool>> items;
-        for (const SignalKey& signal : signal_keys)
-            if (const auto name = signal_name(signal.signal);
-                signal.signal.constellation == system.constellation && !name.empty() && store.has(signal.enable))
-                items.emplace_back(signal.enable, lists(wanted, name) && signal.enable != b1c_for_b1i);
-        if (std::none_of(items.begin(), items.end(), [](const auto& item) { return item.second; })) continue;
-        for (const auto& [item, on] : items)
-            store.set(in_ram, item, on ? 1 : 0);
+    for (const Constellation system : systems_in_order) {
+        if (!names_signal(wanted, system)) continue;
+        for (const NamedSignal& known : septentrio_signals()) {
+            if (known.signal.constellation != system) continue;
+            if (lists(wanted, known.name))
+                to.signals.insert(known.signal);
+            else
+                to.signals.erase(known.signal);
+        }
     }
+    to.put_signals(start_);
 }
 
-void SeptentrioConsole::apply_speeds(ConfigStore& store) const {
-    const auto apply_speed = [&](std::string_view port, std::uint32_t item) {
+void SeptentrioConsole::apply_speeds(SeptentrioTarget& to) const {
+    for (const PortId port : board_.ports) {
+        if (!is_uart(port)) continue;
         constexpr std::string_view prefix = "baud";
-        const std::string& word = state_.settings.values("COMSettings", port).front();
+        const std::string& word = state_.settings.values("COMSettings", descriptor_of(port)).front();
         if (const auto baud = number_in<int>(std::string_view(word).substr(prefix.size())))
-            store.set(in_ram, item, static_cast<std::uint32_t>(*baud));
-    };
-    apply_speed("COM1", key::uart1_baudrate);
-    apply_speed("COM2", key::uart2_baudrate);
-}
-
-// A place that it was told makes it a base in fixed mode, as CFG-TMODE does others.
-void SeptentrioConsole::apply_station(ConfigStore& store) const {
-    constexpr std::uint32_t station_item = 0x30090001;  // CFG-RTCM-DF003_OUT
-    constexpr std::uint64_t moving = 0, fixed = 2;
-    const int station = number_in<int>(state_.settings.values("RTCMv3Formatting").front()).value_or(0);
-    store.set(in_ram, station_item, static_cast<std::uint64_t>(station));
-    const auto place = told_place(state_.settings);
-    store.set(in_ram, key::tmode_mode, place ? fixed : moving);
-    if (!place) return;
-    store.set(in_ram, legacy_key::tmode_pos_type, 0);
-    for (std::uint32_t i = 0; i < 3; ++i) {
-        const auto tenths_of_mm = std::llround(place->vector()[static_cast<Eigen::Index>(i)] * 1e4);
-        store.set(in_ram, legacy_key::tmode_ecef + i, static_cast<std::uint64_t>(tenths_of_mm / 100));
-        store.set(in_ram, legacy_key::tmode_ecef_hp + i, static_cast<std::uint64_t>(tenths_of_mm % 100));
+            to.config.ports[static_cast<std::size_t>(port)].baud = static_cast<std::uint32_t>(*baud);
     }
 }
 
-void SeptentrioConsole::apply_systems(ConfigStore& store) const {
+// A place that it was given makes it a base station. Positions are kept to 0.1 mm.
+void SeptentrioConsole::apply_station(SeptentrioTarget& to) const {
+    to.config.station = number_in<int>(state_.settings.values("RTCMv3Formatting").front()).value_or(0) & 0xFFF;
+    const auto place = told_place(state_.settings);
+    to.config.place.reset();
+    if (!place) return;
+    const auto kept = [&](Eigen::Index axis) {
+        const auto tenths_of_mm = std::llround(place->vector()[axis] * 1e4);
+        return (static_cast<double>(tenths_of_mm / 100) + static_cast<double>(tenths_of_mm % 100) * 1e-2) * 1e-2;
+    };
+    to.config.place = BasePlace{Position<Ecef>(kept(0), kept(1), kept(2)), Metres(0)};
+}
+
+// None that gives a position leaves no receiver to speak of: then nothing changes.
+void SeptentrioConsole::apply_systems(SeptentrioTarget& to) const {
     const auto tracked = split_words(state_.settings.values("SatelliteTracking").front(), '+');
     const auto used = split_words(state_.settings.values("SatelliteUsage").front(), '+');
     const std::string& signals = state_.settings.values("SignalTracking").front();
-    std::vector<std::pair<Constellation, bool>> wanted;
-    bool changed = false;
-    for (const SystemName& system : system_names) {
-        const auto item = switch_of(system, store);
-        if (!item) continue;
-        wanted.emplace_back(system.constellation, names_system(tracked, system) && names_system(used, system) &&
-                                                      names_signal(signals, system.constellation));
-        changed = changed || store.flag(*item) != wanted.back().second;
+    std::set<Constellation> wanted;
+    for (const SystemName& system : system_names)
+        if (names_system(tracked, system) && names_system(used, system) && names_signal(signals, system.constellation))
+            wanted.insert(system.constellation);
+    const auto major = std::ranges::count_if(wanted, gives_position);
+    if (major > 0 && major <= board_.most_systems) to.systems = wanted;
+    to.put_signals(start_);
+}
+
+void SeptentrioTarget::put_signals(const SeptentrioTarget& start) {
+    config.systems.clear();
+    std::set<SystemSignal> measured;
+    for (const Constellation system : systems_in_order) {
+        if (!systems.contains(system)) continue;
+        const auto of_it = [&](const SystemSignal& signal) { return signal.constellation == system; };
+        if (std::ranges::any_of(signals, of_it)) config.systems.push_back(system);
+        std::ranges::copy_if(signals, std::inserter(measured, measured.end()), of_it);
     }
-    // None that gives a position leaves no receiver to speak of: then nothing changes.
-    if (changed) set_systems(board_, store, in_ram, wanted);
+    const bool as_at_start = systems == start.systems && signals == start.signals;
+    config.settings.signals = as_at_start ? start.config.settings.signals : measured;
+}
+
+SeptentrioTarget SeptentrioTarget::at_start(const BoardProfile& board, const ReceiverOptions& options) {
+    SeptentrioTarget target;
+    target.config = factory_settings(board, options);
+    target.config.reports_dead_reckoning = false;
+    target.config.reports_spoofing = target.config.reports_jamming_elsewhere = true;
+    for (PortConfig& port : target.config.ports)
+        port.in.rtcm3 = true;
+    target.systems = {target.config.systems.begin(), target.config.systems.end()};
+    const std::set<SystemSignal>& measured = target.config.settings.signals;
+    for (const Constellation system : systems_in_order) {
+        const auto of_it = [&](const SystemSignal& signal) { return signal.constellation == system; };
+        const std::set<SystemSignal> own = std::ranges::any_of(measured, of_it) ? measured : factory_signals(board, system);
+        std::ranges::copy_if(own, std::inserter(target.signals, target.signals.end()), of_it);
+    }
+    return target;
 }
 
 }  // namespace skyloop::firmware

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +13,8 @@
 #include "base/core/bytes.hpp"
 #include "firmware/messages/sbf_messages.hpp"
 #include "firmware/navigation_state.hpp"
-#include "firmware/nmea_commands.hpp"
+#include "firmware/factory_settings.hpp"
+#include "firmware/maker.hpp"
 #include "firmware/septentrio/settings.hpp"
 #include "receiver/protocol/sbf_cartesian_blocks.hpp"
 
@@ -60,42 +62,54 @@ std::optional<std::uint64_t> wanted_period_ms(const SeptentrioSettings& settings
 /// Whether something is written to the disk: a stream goes there.
 bool logs_to_disk(const SeptentrioSettings& settings);
 
+/// What a Septentrio receiver does by its settings. Systems and signals are kept apart: one that is off keeps its
+/// signals.
+struct SeptentrioTarget {
+    ReceiverConfig config;
+    std::set<Constellation> systems;  ///< that are on
+    std::set<SystemSignal> signals;   ///< of all systems
+    static SeptentrioTarget at_start(const BoardProfile& board, const ReceiverOptions& options);
+    /// Systems and signals of `config`, by those that are on.
+    void put_signals(const SeptentrioTarget& start);
+};
+
 /// Executes lines: settings (`setXxx`, `getXxx`), actions (`exeXxx`), lists (`lstXxx`), by name or mnemonic.
 /// State: the settings in force, those of the next start, the disk.
 class SeptentrioConsole {
 public:
-    /// @param store by which the receiver is configured: speeds, rate, mask and systems follow the settings
-    SeptentrioConsole(const BoardProfile& board, const ConfigStore& store);
+    /// @param board it must outlive this @param start how the receiver begins
+    SeptentrioConsole(const BoardProfile& board, const SeptentrioTarget& start);
 
     /// Answers end with the prompt; a wrong command is answered, a line of ten S takes the port back for commands.
-    CommandOutcome execute(const std::string& line, ConfigStore& store, PortId from);
-    /// Whether the input of a port lets RTCM 3 in (DataInOut).
-    [[nodiscard]] bool hears_corrections(PortId port) const;
+    /// @param to what the receiver does, which follows the settings
+    CommandOutcome execute(const std::string& line, SeptentrioTarget& to, PortId from);
     /// After a restart the saved settings hold.
-    void restart(ConfigStore& store);
+    void restart(SeptentrioTarget& to);
+    /// All settings are as at the factory.
+    void forget(SeptentrioTarget& to);
     /// Takes an epoch in before what is due is made from it.
     void follow(const NavigationState& state) { follow_epoch(state_, board_, state); }
     [[nodiscard]] const SeptentrioState& state() const { return state_; }
 
 private:
     struct Command;
-    std::string answer(const Command& command, ConfigStore& store, CommandOutcome& outcome);
-    std::string act(const Command& command, const ConfigStore& store, CommandOutcome& outcome);
+    std::string answer(const Command& command, SeptentrioTarget& to, CommandOutcome& outcome);
+    std::string act(const Command& command, CommandOutcome& outcome);
     std::string act_on_receiver(const Command& command, CommandOutcome& outcome);
-    [[nodiscard]] std::string capabilities(const ConfigStore& store) const;
+    [[nodiscard]] std::string capabilities() const;
     [[nodiscard]] std::string identification() const;
     [[nodiscard]] bool lets_in(PortId port, std::string_view input) const;
-    void adopt(const ConfigStore& store);
-    void apply(ConfigStore& store) const;
-    void apply_speeds(ConfigStore& store) const;
-    void apply_systems(ConfigStore& store) const;
-    void apply_signals(ConfigStore& store) const;
-    void apply_station(ConfigStore& store) const;
-    void apply_motion(ConfigStore& store) const;
-    void apply_talker(ConfigStore& store) const;
+    void adopt();
+    void apply(SeptentrioTarget& to) const;
+    void apply_speeds(SeptentrioTarget& to) const;
+    void apply_systems(SeptentrioTarget& to) const;
+    void apply_signals(SeptentrioTarget& to) const;
+    void apply_station(SeptentrioTarget& to) const;
+    void apply_motion(SeptentrioTarget& to) const;
+    void apply_talker(SeptentrioTarget& to) const;
 
     const BoardProfile& board_;
-    std::uint64_t own_period_ms_;
+    SeptentrioTarget start_;
     SeptentrioState state_;
     SeptentrioSettings factory_, at_start_;
     bool speeds_saved_ = false;

@@ -10,7 +10,6 @@
 #include "firmware/config/config_keys.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/messages/sbf_messages.hpp"
-#include "firmware/nmea_commands.hpp"
 #include "firmware/septentrio/console.hpp"
 #include "firmware/septentrio/rover_and_station.hpp"
 #include "receiver/protocol/sbf_raw_blocks.hpp"

@@ -34,27 +34,24 @@ bool allows(const SeptentrioSettings& settings, CorrectionState state) {
     return true;
 }
 
-struct NamedSignal {
-    SystemSignal signal;
-    std::string_view name;
-};
-constexpr std::array named_signals{NamedSignal{{Constellation::gps, Signal::l1}, "GPSL1CA"},
-                                   NamedSignal{{Constellation::gps, Signal::l2}, "GPSL2C"},
-                                   NamedSignal{{Constellation::gps, Signal::l5}, "GPSL5"},
-                                   NamedSignal{{Constellation::glonass, Signal::g1}, "GLOL1CA"},
-                                   NamedSignal{{Constellation::glonass, Signal::g2}, "GLOL2CA"},
-                                   NamedSignal{{Constellation::galileo, Signal::l1}, "GALL1BC"},
-                                   NamedSignal{{Constellation::galileo, Signal::l5}, "GALE5a"},
-                                   NamedSignal{{Constellation::galileo, Signal::e5b}, "GALE5b"},
-                                   NamedSignal{{Constellation::sbas, Signal::l1}, "GEOL1"},
-                                   NamedSignal{{Constellation::beidou, Signal::b1i}, "BDSB1I"},
-                                   NamedSignal{{Constellation::beidou, Signal::e5b}, "BDSB2I"},
-                                   NamedSignal{{Constellation::beidou, Signal::b3i}, "BDSB3I"},
-                                   NamedSignal{{Constellation::beidou, Signal::l5}, "BDSB2a"},
-                                   NamedSignal{{Constellation::qzss, Signal::l1}, "QZSL1CA"},
-                                   NamedSignal{{Constellation::qzss, Signal::l2}, "QZSL2C"},
-                                   NamedSignal{{Constellation::qzss, Signal::l5}, "QZSL5"},
-                                   NamedSignal{{Constellation::navic, Signal::l5}, "NAVICL5"}};
+constexpr std::array named_signals{
+    NamedSignal{{Constellation::gps, Signal::l1}, "GPSL1CA"},
+    NamedSignal{{Constellation::gps, Signal::l2}, "GPSL2C"},
+    NamedSignal{{Constellation::gps, Signal::l5}, "GPSL5"},
+    NamedSignal{{Constellation::sbas, Signal::l1}, "GEOL1"},
+    NamedSignal{{Constellation::galileo, Signal::l1}, "GALL1BC"},
+    NamedSignal{{Constellation::galileo, Signal::l5}, "GALE5a"},
+    NamedSignal{{Constellation::galileo, Signal::e5b}, "GALE5b"},
+    NamedSignal{{Constellation::beidou, Signal::b1i}, "BDSB1I"},
+    NamedSignal{{Constellation::beidou, Signal::e5b}, "BDSB2I"},
+    NamedSignal{{Constellation::beidou, Signal::b3i}, "BDSB3I"},
+    NamedSignal{{Constellation::qzss, Signal::l1}, "QZSL1CA"},
+    NamedSignal{{Constellation::qzss, Signal::l2}, "QZSL2C"},
+    NamedSignal{{Constellation::qzss, Signal::l5}, "QZSL5"},
+    NamedSignal{{Constellation::glonass, Signal::g1}, "GLOL1CA"},
+    NamedSignal{{Constellation::glonass, Signal::g2}, "GLOL2CA"},
+    NamedSignal{{Constellation::navic, Signal::l5}, "NAVICL5"},
+    NamedSignal{{Constellation::beidou, Signal::l5}, "BDSB2a"}};
 
 }  // namespace
 
@@ -103,11 +100,7 @@ std::optional<std::uint64_t> model_of_motion(std::string_view motion) {
     return std::nullopt;
 }
 
-std::string_view signal_name(SystemSignal signal) {
-    for (const NamedSignal& named : named_signals)
-        if (named.signal == signal) return named.name;
-    return {};
-}
+std::span<const NamedSignal> septentrio_signals() { return named_signals; }
 
 namespace {
 

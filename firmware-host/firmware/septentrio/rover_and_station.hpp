@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -26,11 +27,15 @@ void withhold_forbidden(const SeptentrioSettings& settings, NavigationState& sta
 /// What stands where it was told (PVTMode Static) and solves the time alone has that place for its position.
 void tell_given_place(NavigationState& state);
 
-/// CFG-NAVSPG-DYNMODEL for a motion of ReceiverDynamics; nothing for a word that is not known.
+/// The number of the dynamic model (dynamic_model_of()) for a motion of ReceiverDynamics; nothing for a word that is not known.
 std::optional<std::uint64_t> model_of_motion(std::string_view motion);
 
-/// A signal's name, such as GPSL2C; empty for one without.
-std::string_view signal_name(SystemSignal signal);
+/// A signal and its name, such as GPSL2C.
+struct NamedSignal {
+    SystemSignal signal;
+    std::string_view name;
+};
+std::span<const NamedSignal> septentrio_signals();
 
 /// Whether a list of words by + has this one, or "all".
 bool lists(std::string_view words, std::string_view word);

@@ -10,7 +10,6 @@
 
 #include "base/core/number_text.hpp"
 #include "base/core/words.hpp"
-#include "firmware/nmea_commands.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -18,7 +18,7 @@ Emulator::Emulator(Parts parts, GpsTime start)
         dialogues_.emplace_back(i,
                                 Dialogue::Listener{[this](const MessageSeen& seen) { parts_.director.show(seen); },
                                                    [this](const BeliefSeen& seen) { parts_.director.show(seen); }},
-                                parts_.stations[i].receiver().board().personality == firmware::Personality::sbf);
+                                parts_.stations[i].receiver().board().maker == firmware::MakerKind::sbf);
     for (Station& station : parts_.stations)
         station.start(start);
     if (parts_.feeds) parts_.director.add_observer(parts_.feeds.get());

@@ -12,7 +12,7 @@ namespace skyloop::inline run {
 namespace {
 
 using firmware::BoardProfile;
-using firmware::Personality;
+using firmware::MakerKind;
 using firmware::PortId;
 using firmware::SpeedChangeAnswer;
 using firmware::ValueConfigSupport;
@@ -153,7 +153,7 @@ void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     navigation.integer("fast_satellites", board.fast_satellites, {4, 64});
     navigation.integer("least_measurement_period_ms", board.least_measurement_period_ms, {1, 65535});
     navigation.degrees("elevation_mask_deg", board.elevation_mask, {0, 90});
-    board.dynamic_limits = board.personality == Personality::ublox;
+    board.dynamic_limits = board.maker == MakerKind::ublox;
     navigation.boolean("dynamic_limits", board.dynamic_limits);
     read_export_limits(navigation, board.export_limits);
     navigation.quantity("solution_latency_s", board.solution_latency, {0, 2});
@@ -172,7 +172,7 @@ void read_board_sbf(TableReader& sbf, BoardProfile& board) {
 
 // A u-blox receiver whose factory settings it would refuse itself could never be configured.
 void check_factory_config(TableReader& top, const BoardProfile& board) {
-    if (board.personality != Personality::ublox) return;
+    if (board.maker != MakerKind::ublox) return;
     const auto factory = firmware::factory_config(board);
     if (const auto* item = firmware::first_out_of_range(board, factory))
         return top.mistake_here(fmt::format("gives {} the factory value {}, which the receiver itself would refuse",
@@ -235,15 +235,15 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     board.constellations = {Constellation::gps};
     top.text("description", board.description);
     top.word("personality",
-             {{"mute", Personality::mute},
-              {"ublox", Personality::ublox},
-              {"mtk", Personality::mtk},
-              {"airoha", Personality::airoha},
-              {"msp", Personality::msp},
-              {"msp-v1", Personality::msp_v1},
-              {"mavlink", Personality::mavlink},
-              {"sbf", Personality::sbf}},
-             board.personality);
+             {{"mute", MakerKind::mute},
+              {"ublox", MakerKind::ublox},
+              {"mtk", MakerKind::mtk},
+              {"airoha", MakerKind::airoha},
+              {"msp", MakerKind::msp},
+              {"msp-v1", MakerKind::msp_v1},
+              {"mavlink", MakerKind::mavlink},
+              {"sbf", MakerKind::sbf}},
+             board.maker);
     top.table("identity", [&](TableReader& t) { read_board_identity(t, board.identity); });
     top.table("timing", [&](TableReader& t) { read_board_timing(t, board.timing); });
     top.table("corrections", [&](TableReader& t) { read_board_corrections(t, board.corrections); });
@@ -258,7 +258,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     if (board.messages.empty())
         for (const std::string_view name : firmware::nmea_sentence_names)
             board.messages.push_back(firmware::find_output_message(name)->id);
-    if (board.personality == firmware::Personality::ublox) leave_out_rates_of_others(board);
+    if (board.maker == firmware::MakerKind::ublox) leave_out_rates_of_others(board);
     top.table("config", [&](TableReader& t) { read_board_config(t, board); });
     check_factory_config(top, board);
 }

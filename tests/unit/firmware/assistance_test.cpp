@@ -1,8 +1,9 @@
 // What a receiver says to assistance.
-#include "firmware/corrections_and_assistance.hpp"
+#include "firmware/ublox/assistance.hpp"
 
 #include <gtest/gtest.h>
 
+#include "firmware/config/config_keys.hpp"
 #include "firmware/receiver.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_mon.hpp"

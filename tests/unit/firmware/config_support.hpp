@@ -21,7 +21,7 @@ inline constexpr std::uint32_t period_item = key::rate_meas, cycles_item = key::
 inline BoardProfile whole_board() {
     BoardProfile board;
     board.name = "test";
-    board.personality = Personality::ublox;
+    board.maker = MakerKind::ublox;
     board.identity.generation = 9;
     board.baud = 38400;
     board.bauds = {9600, 38400, 115200};

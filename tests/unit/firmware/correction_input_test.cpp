@@ -1,4 +1,4 @@
-#include "firmware/corrections_and_assistance.hpp"
+#include "firmware/corrections.hpp"
 
 #include <gtest/gtest.h>
 

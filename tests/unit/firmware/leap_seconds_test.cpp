@@ -30,7 +30,7 @@ struct ColdReceiver {
     }
     const TimeKnowledge& update() {
         fix.time += 1s;
-        return tracker.update(Epoch{fix}, store, {}).time;
+        return tracker.update(Epoch{fix}, receiver_config(store, board), {}).time;
     }
 
     BoardProfile board;

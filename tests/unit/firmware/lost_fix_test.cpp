@@ -25,7 +25,7 @@ struct LosingReceiver {
     void step(int epochs = 1) {
         for (int i = 0; i < epochs; ++i) {
             fix.time += 1s;
-            told.state = tracker.update(Epoch{fix}, told.config, {});
+            told.state = tracker.update(Epoch{fix}, receiver_config(told.config, told.board), {});
         }
     }
     void lose() { fix.type = FixType::none; }

@@ -22,7 +22,7 @@ Fix six_gps_satellites() {
 TEST(NmeaMessages, ChooseTheTalkerByTheMajorSystems) {
     const auto talker = [](std::vector<Constellation> enabled) {
         const BoardProfile board = sample_board(NmeaVersion::v4_10, std::move(enabled));
-        return nmea_talker(board, ConfigStore(factory_config(board)));
+        return nmea_talker(board, receiver_config(ConfigStore(factory_config(board)), board));
     };
     EXPECT_EQ(talker({gps}), "GP");
     EXPECT_EQ(talker({gps, sbas, qzss}), "GP");

@@ -101,7 +101,7 @@ TEST(NmeaWithoutAFix, SaysWhatReceiversSay) {
     EXPECT_EQ(m8.message(gsa_id).at(0), "$GNGSA,A,1,,,,,,,,,,,,,99.99,99.99,99.99*2E\r\n");
     EXPECT_THAT(m8.line(gns_id), StartsWith("$GNGNS,,,,,,NN,00,99.99,,,,*"));
     SampleReceiver m10 = without_fix(NmeaVersion::v4_11, {gps, sbas, galileo, beidou, qzss});
-    m10.board.personality = Personality::ublox;
+    m10.board.maker = MakerKind::ublox;
     m10.board.identity.generation = 10;
     ASSERT_THAT(m10.message(gsv_id), SizeIs(4));
     EXPECT_EQ(m10.message(gsv_id).at(0), "$GPGSV,1,1,00,1*64\r\n");

@@ -23,7 +23,7 @@ struct Driven {
     void drive(int epochs) {
         for (int i = 0; i < epochs; ++i) {
             fix.time += 1s;
-            tracker.update({fix}, store, {});
+            tracker.update({fix}, receiver_config(store, board), {});
         }
     }
     [[nodiscard]] const NavigationState& state() const { return tracker.state(); }

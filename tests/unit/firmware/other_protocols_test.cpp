@@ -1,3 +1,4 @@
+#include "firmware/makers.hpp"
 #include "firmware/messages/other_protocols.hpp"
 
 #include <gtest/gtest.h>
@@ -34,13 +35,10 @@ NavigationState without_fix() {
 class OtherProtocols : public testing::Test {
 protected:
     OtherProtocols() { board_.solution_latency = Seconds(0.05); }
-    std::vector<Bytes> messages(Personality personality, const NavigationState& state) {
-        return make_protocol_messages(personality, {board_, config_, state}, sent_);
-    }
     SbfPvtGeodetic pvt(const NavigationState& state) { return sbf_pvt_geodetic({board_, config_, state}); }
     MavlinkSent sent_;
     BoardProfile board_;
-    ConfigStore config_{ConfigValues{}};
+    ReceiverConfig config_;
 };
 
 TEST_F(OtherProtocols, MspTellsTheSolution) {
@@ -201,7 +199,7 @@ TEST_F(OtherProtocols, MavlinkHasAHeartbeatASecondAndCountsItsFramesWithoutAGap)
     std::vector<std::uint32_t> kinds;
     for (const double since_boot : {3.75, 4.0, 4.25, 4.75, 5.25}) {
         state.since_boot = Seconds(since_boot);
-        for (const Bytes& frame : messages(Personality::mavlink, state)) {
+        for (const Bytes& frame : mavlink_messages(state, sent_)) {
             const auto view = parse_mavlink(frame);
             ASSERT_TRUE(view);
             sequence.push_back(view->source.sequence);
@@ -307,14 +305,29 @@ TEST_F(OtherProtocols, ChannelsAreUsedInASolutionAlone) {
     }
 }
 
-TEST_F(OtherProtocols, EveryPersonalityHasItsMessages) {
+// What is due on a port at an epoch.
+std::vector<Bytes> due_of(MakerKind kind, PortId port) {
+    BoardProfile board;
+    board.maker = kind;
+    board.ports = {PortId::uart1, PortId::usb};
+    const std::unique_ptr<Maker> maker = maker_row(kind).make(board, {});
     const NavigationState state = navigating();
-    EXPECT_TRUE(messages(Personality::sbf, state).empty()) << "its streams say what it sends";
-    EXPECT_EQ(parse_msp(messages(Personality::msp, state).at(0))->function, 0x1F03);
-    EXPECT_EQ(parse_msp(messages(Personality::msp_v1, state).at(0))->function, 201);
-    EXPECT_EQ(parse_mavlink(messages(Personality::mavlink, state).at(1))->message, 232u);
-    EXPECT_TRUE(messages(Personality::ublox, state).empty());
-    EXPECT_TRUE(messages(Personality::mute, state).empty());
+    EpochMessages made({board, maker->config(), state});
+    const DueMessages due = maker->due(port, made, {});
+    std::vector<Bytes> frames;
+    for (const ByteSpan frame : due.frames)
+        frames.emplace_back(frame.begin(), frame.end());
+    return frames;
+}
+
+TEST(OutputOnly, SendsItsOwnFramesByUart1Alone) {
+    EXPECT_EQ(parse_msp(due_of(MakerKind::msp, PortId::uart1).at(0))->function, 0x1F03);
+    EXPECT_EQ(parse_msp(due_of(MakerKind::msp_v1, PortId::uart1).at(0))->function, 201);
+    EXPECT_EQ(parse_mavlink(due_of(MakerKind::mavlink, PortId::uart1).at(1))->message, 232u);
+    for (const MakerKind kind : {MakerKind::msp, MakerKind::msp_v1, MakerKind::mavlink})
+        EXPECT_TRUE(due_of(kind, PortId::usb).empty());
+    EXPECT_TRUE(due_of(MakerKind::sbf, PortId::uart1).empty()) << "its streams say what it sends";
+    EXPECT_TRUE(due_of(MakerKind::mute, PortId::uart1).empty());
 }
 
 }  // namespace

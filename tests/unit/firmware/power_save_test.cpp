@@ -299,7 +299,7 @@ PowerSaveSettings saver_settings(BoardProfile board, std::vector<std::pair<std::
     ConfigStore store(factory_config(board));
     for (const auto& [id, value] : values)
         store.set(in_ram, id, value);
-    return PowerSaveSettings::of(store, board);
+    return receiver_config(store, board).power;
 }
 
 TEST(PowerSaveSettings, AreThoseInForce) {
@@ -329,7 +329,7 @@ TEST(PowerSaveSettings, AreNoneOnABoardThatDoesNotSave) {
     const BoardProfile board = sample_ublox();
     ConfigStore store(factory_config(board));
     store.set(in_ram, key::pm_operate_mode, 1);
-    EXPECT_EQ(PowerSaveSettings::of(store, board).mode, PowerMode::full);
+    EXPECT_EQ(receiver_config(store, board).power.mode, PowerMode::full);
 }
 
 // NEO-M9N integration manual, 3.11.6.

@@ -355,7 +355,7 @@ TEST(ReceiverCommands, ForgetsThePlaceWithoutTheTime) {
 
 TEST(ReceiverCommands, AcknowledgesARestartBeforeIt) {
     BoardProfile board = sample_ublox();
-    board.personality = Personality::airoha;
+    board.maker = MakerKind::airoha;
     for (const int number : {4, 5, 6, 7}) {
         Bench bench(board);
         bench.wait(300ms).write(to_bytes(number == 4   ? "$PAIR004*3E\r\n"
@@ -370,7 +370,7 @@ TEST(ReceiverCommands, AcknowledgesARestartBeforeIt) {
 
 TEST(ReceiverCommands, AcknowledgesARestartAtTheOldSpeed) {
     BoardProfile board = sample_ublox();
-    board.personality = Personality::airoha;
+    board.maker = MakerKind::airoha;
     Bench bench(board);
     const auto command = [](const char* body) { return to_bytes(Sentence(body).finish()); };
     bench.wait(300ms).write(command("PAIR864,0,0,115200")).wait(100ms).forget();
@@ -468,7 +468,7 @@ TEST(ReceiverCommands, BeginsAsItsUserHasSavedIt) {
         return result ? std::string("taken") : result.error().message;
     };
     BoardProfile board = sample_ublox();
-    board.personality = Personality::mute;
+    board.maker = MakerKind::mute;
     Bench mute(std::move(board));
     EXPECT_TRUE(mute.receiver().configure({}));
     EXPECT_FALSE(mute.receiver().configure({{period, 500}})) << "no u-blox receiver";

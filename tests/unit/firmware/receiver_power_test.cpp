@@ -399,9 +399,9 @@ TEST(ReceiverPower, DoesNotWakeADeafOne) {
     EXPECT_FALSE(bench.write(Bytes{0xFF}).wait(1ms).is_on());
 }
 
-BoardProfile command_board(Personality personality) {
+BoardProfile command_board(MakerKind kind) {
     BoardProfile board = sample_board(NmeaVersion::v2_3, {Constellation::gps});
-    board.personality = personality;
+    board.maker = kind;
     board.messages = {{0xF0, 0x00}, {0xF0, 0x04}};
     board.identity.banner = {"$PMTK011,MTKGPS", "$PMTK010,001", "$PMTK010,002"};
     board.identity.version_answers = {"$PAIR020,AG3352,1.2"};
@@ -414,7 +414,7 @@ Bytes command(const std::string& body) { return to_bytes(Sentence(body).finish()
 
 // Adafruit's library takes the acknowledgement for the one and PMTK010,002 for the other.
 TEST(ReceiverPower, StandsByOnPmtk161UntilAByteComes) {
-    PowerBench bench(command_board(Personality::mtk));
+    PowerBench bench(command_board(MakerKind::mtk));
     EXPECT_THAT(bench.wait(3s).texts(), HasSubstr("$GPRMC"));
     bench.write(command("PMTK220,500")).wait(1s).texts();
     bench.write(command("PMTK161,0")).wait(500ms);
@@ -433,7 +433,7 @@ TEST(ReceiverPower, StandsByOnPmtk161UntilAByteComes) {
 }
 
 TEST(ReceiverPower, HearsCommandsWhileAiroha003KeepsItsTrackingOff) {
-    PowerBench bench(command_board(Personality::airoha));
+    PowerBench bench(command_board(MakerKind::airoha));
     EXPECT_THAT(bench.wait(3s).texts(), HasSubstr("$GPRMC"));
     bench.write(command("PAIR003")).wait(500ms).texts();  // the epoch under way still leaves
     EXPECT_EQ(bench.wait(5s).texts(), "");

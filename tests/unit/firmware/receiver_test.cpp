@@ -9,7 +9,7 @@
 #include "base/core/random.hpp"
 #include "firmware/config/config_handler.hpp"
 #include "firmware/config/config_keys.hpp"
-#include "firmware/receiver_core.hpp"
+#include "firmware/config/config_handler.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
@@ -161,7 +161,7 @@ TEST(Receiver, RefusesStoredSettingsThatItWouldRefuse) {
               "state:2: layer 'flash', which this receiver does not have");
     EXPECT_TRUE(without_flash.restore("battery CFG-RATE-MEAS 500\n", "state"));
 
-    board.personality = Personality::mtk;
+    board.maker = MakerKind::mtk;
     Receiver other(std::move(board));
     EXPECT_TRUE(other.restore("flash CFG-NAVSPG-DYNMODEL 99\n", "state")) << "ranges are of u-blox";
 }
@@ -189,7 +189,7 @@ TEST(Receiver, SolvesWithFewerSatellitesAboveARate) {
 // RECEIVER.md 2.4: 32 from the factory on.
 TEST(Receiver, OfUBloxSolvesWithAsManySatellitesAsItsConfigurationSays) {
     BoardProfile board = sample_board(NmeaVersion::v4_0, {gps});
-    board.personality = Personality::ublox;
+    board.maker = MakerKind::ublox;
     EXPECT_EQ(Receiver(board, {5}).settings().most_satellites, 32U);
     board.config[0x201100A2] = 20;
     EXPECT_EQ(Receiver(board, {5}).settings().most_satellites, 20U);

@@ -52,7 +52,7 @@ inline BoardProfile sample_board(NmeaVersion version, std::vector<Constellation>
 /// A u-blox of generation 9 with two UARTs and USB, all in its factory state but for silence on NMEA.
 inline BoardProfile sample_ublox() {
     BoardProfile board = sample_board(NmeaVersion::v4_10, {Constellation::gps, Constellation::galileo});
-    board.personality = Personality::ublox;
+    board.maker = MakerKind::ublox;
     board.identity = {9, "EXT CORE 4.04 (7f89f7)", "00190000", {"FWVER=SPG 4.04", "PROTVER=32.01"}, Bytes(5), {}, {}};
     board.identity.banner = {"HELLO", "FWVER=SPG 4.04"};
     board.baud = 38400;

@@ -10,7 +10,6 @@
 
 #include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/nmea_commands.hpp"
 #include "receiver/protocol/nmea_messages.hpp"
 #include "sample_epochs.hpp"
 
@@ -31,7 +30,11 @@ struct SampleReceiver {
         state.course = fix.has_position() ? std::optional(fix.course) : std::nullopt;
         state.course_is_frozen = fix.speed < board.course_min_speed;
     }
-    [[nodiscard]] ReportContext context() const { return {board, config, state}; }
+    /// What it holds is that of the last call.
+    [[nodiscard]] ReportContext context() const {
+        in_force = receiver_config(config, board);
+        return {board, in_force, state};
+    }
     /// One message, as text.
     [[nodiscard]] std::vector<std::string> message(std::uint8_t id, std::uint8_t message_class = 0xF0) const {
         std::vector<std::string> lines;
@@ -59,18 +62,6 @@ struct SampleReceiver {
         set(fix);
         return sentences();
     }
-    /// A client's sentence, without checksum.
-    CommandOutcome execute(const std::string& body, PortId from = PortId::uart1) {
-        const std::string text = Sentence(body).finish();
-        return execute_sentence(*parse_sentence(text), board, config, from);
-    }
-    /// The answers to it.
-    std::vector<std::string> answers(const std::string& body, PortId from = PortId::uart1) {
-        std::vector<std::string> lines;
-        for (const Bytes& bytes : execute(body, from).answers)
-            lines.push_back(to_string(bytes));
-        return lines;
-    }
     [[nodiscard]] int rate(std::string_view name, PortId port = PortId::uart1) const {
         return config.rate(find_output_message(name)->id, port);
     }
@@ -78,6 +69,7 @@ struct SampleReceiver {
     BoardProfile board;
     ConfigStore config;
     NavigationState state;
+    mutable ReceiverConfig in_force;
 };
 
 /// The messages of one kind among sentences.

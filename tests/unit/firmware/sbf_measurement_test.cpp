@@ -246,8 +246,8 @@ TEST(SbfCartesian, IsTheGeodeticSolutionAlongOtherAxes) {
     NavigationState state = measuring_state();
     state.epoch.fix.velocity = {3, 4, -1};
     BoardProfile board = sample_board(NmeaVersion::v4_0, {Constellation::gps});
-    const ConfigStore store(factory_config(board));
-    const SbfPvtCartesian block = sbf_pvt_cartesian({board, store, state});
+    const ReceiverConfig config;
+    const SbfPvtCartesian block = sbf_pvt_cartesian({board, config, state});
     EXPECT_EQ(block.mode, 1);
     EXPECT_NEAR(std::hypot(block.x, block.y, block.z), 6366.6e3 + 500, 1e3);
     EXPECT_NEAR(std::hypot(block.vx, block.vy, block.vz), std::sqrt(26.0), 1e-5);
@@ -257,7 +257,7 @@ TEST(SbfCartesian, IsTheGeodeticSolutionAlongOtherAxes) {
                 std::pow(state.epoch.fix.vertical_accuracy.value() / state.epoch.fix.horizontal_accuracy.value(), 2),
                 1e-4);
     state.fix_ok = false;
-    EXPECT_EQ(sbf_pvt_cartesian({board, store, state}).x, sbf_nothing);
+    EXPECT_EQ(sbf_pvt_cartesian({board, config, state}).x, sbf_nothing);
     EXPECT_EQ(sbf_position_covariance_cartesian(state).covariance, no_sbf_covariance);
 }
 

@@ -26,7 +26,7 @@ using testing::StartsWith;
 
 BoardProfile septentrio_board() {
     BoardProfile board = sample_board(NmeaVersion::v4_0, {Constellation::gps, Constellation::galileo});
-    board.personality = Personality::sbf;
+    board.maker = MakerKind::sbf;
     board.sentences.clear();
     board.baud = 115200;
     board.default_rate_hz = 5;
@@ -38,12 +38,13 @@ BoardProfile septentrio_board() {
 class Console : public testing::Test {
 protected:
     std::string say(const std::string& line, PortId from = PortId::uart1) {
-        outcome_ = console_.execute(line, store_, from);
+        outcome_ = console_.execute(line, target_, from);
         return outcome_.answers.empty() ? "" : to_string(outcome_.answers.front());
     }
     BoardProfile board_ = septentrio_board();
-    ConfigStore store_{factory_config(board_)};
-    SeptentrioConsole console_{board_, store_};
+    const SeptentrioTarget start_ = SeptentrioTarget::at_start(board_, {});
+    SeptentrioTarget target_ = start_;
+    SeptentrioConsole console_{board_, start_};
     CommandOutcome outcome_;
 };
 
@@ -67,7 +68,7 @@ TEST_F(Console, RepeatsACommandToTheLetterAndTellsWhatIsSet) {
               "$R: getSBFOutput, Stream2\r\n  SBFOutput, Stream2, COM1, DOP+PVTGeodetic, msec200\r\nUSB1>");
     EXPECT_THAT(say("setElevationMask, all, 12"),
                 HasSubstr("  ElevationMask, Tracking, 12\r\n  ElevationMask, PVT, 12\r\n"));
-    EXPECT_EQ(store_.signed_value(key::navspg_min_elev), 12);
+    EXPECT_EQ(target_.config.elevation_mask.deg(), 12);
 }
 
 TEST_F(Console, AddsToListsAndTakesAway) {
@@ -116,7 +117,7 @@ TEST_F(Console, RefusesWordsThatThereAreNot) {
         {"emd, DSK1, Unmount, now", "exeManageDisk: Argument 'now'"}};
     for (const auto& [line, why] : wrong) {
         EXPECT_EQ(say(line), std::string("$R? ") + why + " is invalid!\r\nCOM1>") << line;
-        EXPECT_FALSE(outcome_.restart) << line;
+        EXPECT_FALSE(outcome_.reset) << line;
     }
     EXPECT_THAT(say("gst"), HasSubstr("  SatelliteTracking, GPS+GALILEO\r\n"));
     EXPECT_TRUE(console_.state().disk_mounted);
@@ -171,19 +172,19 @@ TEST_F(Console, KeepsPlacesOfReferenceStations) {
 }
 
 TEST_F(Console, StandsWhereItWasTold) {
-    const auto place = [&] { return base_place(store_, std::nullopt).value_or(BasePlace{}).position.vector(); };
+    const auto place = [&] { return target_.config.place.value_or(BasePlace{}).position.vector(); };
     say("spm, Static, , Geodetic1");
-    EXPECT_FALSE(base_place(store_, std::nullopt)) << "a position that was not set is none";
+    EXPECT_FALSE(target_.config.place) << "a position that was not set is none";
     say("sspg, Geodetic1, 47, 8, 400");
     EXPECT_LT((place() - to_ecef(Geodetic::degrees(47, 8, 400)).vector()).norm(), 1e-4);
     say("sspc, Cartesian3, -4019952.0287, 331452.9541, 4924307.458");
     say("setPVTMode, Static, All, cartesian3");
     EXPECT_LT((place() - Eigen::Vector3d(-4019952.0287, 331452.9541, 4924307.458)).norm(), 1e-4);
     say("spm, , , auto");
-    EXPECT_FALSE(base_place(store_, std::nullopt));
+    EXPECT_FALSE(target_.config.place);
     say("spm, Static, , Cartesian3");
     say("spm, Rover");
-    EXPECT_FALSE(base_place(store_, std::nullopt));
+    EXPECT_FALSE(target_.config.place);
 }
 
 TEST_F(Console, IsToldOfTheMessagesOfAReferenceStation) {
@@ -215,10 +216,10 @@ TEST_F(Console, PromptsWhoAsksForIt) {
     EXPECT_EQ(say(""), "COM1>");
     EXPECT_EQ(say("# nothing"), "COM1>");
     EXPECT_EQ(say("SSSSSSSSSS"), "COM1>");
-    EXPECT_TRUE(console_.hears_corrections(PortId::uart1));
+    EXPECT_TRUE(target_.config.port(PortId::uart1).in.rtcm3);
     say("sdio,COM1,none");
-    EXPECT_FALSE(console_.hears_corrections(PortId::uart1));
-    EXPECT_TRUE(console_.hears_corrections(PortId::usb));
+    EXPECT_FALSE(target_.config.port(PortId::uart1).in.rtcm3);
+    EXPECT_TRUE(target_.config.port(PortId::usb).in.rtcm3);
     EXPECT_EQ(say("gecm"), "");
     EXPECT_THAT(say("gecm", PortId::usb), StartsWith("$R: gecm\r\n"));
     EXPECT_EQ(say("SSSSSSSSSS"), "COM1>");
@@ -226,47 +227,48 @@ TEST_F(Console, PromptsWhoAsksForIt) {
 }
 
 TEST_F(Console, SolvesAsOftenAsItsStreamsNeed) {
-    const auto period = [&] { return store_.value(key::rate_meas); };
-    const std::uint64_t own = period();
+    const auto period = [&] { return target_.config.settings.navigation_period / 1ms; };
+    const std::int64_t own = period();
     say("sso,Stream1,COM1,DOP,msec100");
-    EXPECT_EQ(period(), 100U);
+    EXPECT_EQ(period(), 100);
     say("sno,Stream1,COM1,GGA,msec50");
-    EXPECT_EQ(period(), 50U);
+    EXPECT_EQ(period(), 50);
     say("sso,all,none,none,off");
-    EXPECT_EQ(period(), 50U);
+    EXPECT_EQ(period(), 50);
     say("sno,all,none,none,off");
     EXPECT_EQ(period(), own);
     say("sso,Stream1,COM1,DOP,sec10");
-    EXPECT_EQ(period(), 1000U) << "a solution each second at least";
+    EXPECT_EQ(period(), 1000) << "a solution each second at least";
     say("sso,Stream1,COM1,DOP,msec20");
-    EXPECT_EQ(period(), 20U);
+    EXPECT_EQ(period(), 20);
     EXPECT_THAT(say("sso,Stream1,COM1,DOP,msec10"), StartsWith("$R: ")) << "ROS asks for it";
 }
 
 TEST_F(Console, SaysWhatIsTrackedAndHowItMoves) {
-    const auto l2c = 0x10310003u, gps = 0x1031001Fu, qzss = 0x10310024u;
-    EXPECT_FALSE(store_.flag(l2c));
+    using enum Constellation;
+    const auto measures_l2c = [&] { return target_.config.settings.signals.contains({gps, Signal::l2}); };
+    EXPECT_FALSE(measures_l2c());
     say("snt,+GPSL2C");
-    EXPECT_TRUE(store_.flag(l2c));
+    EXPECT_TRUE(measures_l2c());
     say("snt,-GPSL1CA-GPSL2C");
-    EXPECT_FALSE(store_.flag(gps)) << "a system without a signal";
+    EXPECT_FALSE(target_.config.has_on(gps)) << "a system without a signal";
     say("snt,+GPSL1CA");
-    EXPECT_TRUE(store_.flag(gps));
-    EXPECT_FALSE(store_.flag(l2c));
+    EXPECT_TRUE(target_.config.has_on(gps));
+    EXPECT_FALSE(measures_l2c());
     say("sst,+QZSS");
     say("ssu,+QZSS");
-    EXPECT_TRUE(store_.flag(qzss)) << "its signal is among those of the factory";
+    EXPECT_TRUE(target_.config.has_on(qzss)) << "its signal is among those of the factory";
     EXPECT_EQ(say("snt,GPSL7"), "$R? SignalTracking: Argument 'Signal' is invalid!\r\nCOM1>");
-    const std::uint64_t own = store_.value(key::navspg_dynmodel);
+    const int own = target_.config.limits.dynamic_model;
     say("gso");
-    EXPECT_EQ(store_.value(key::navspg_dynmodel), own) << "until it is told";
+    EXPECT_EQ(target_.config.limits.dynamic_model, own) << "until it is told";
     say("srd,Moderate,UAV");
-    EXPECT_EQ(store_.value(key::navspg_dynmodel), 8U);
+    EXPECT_EQ(target_.config.limits.dynamic_model, 8);
     say("sem,PVT,10");
     say("sem,Tracking,15");
-    EXPECT_EQ(store_.signed_value(key::navspg_min_elev), 15) << "what is not tracked is not used";
+    EXPECT_EQ(target_.config.elevation_mask.deg(), 15) << "what is not tracked is not used";
     say("snti, GP");
-    EXPECT_EQ(store_.value(key::nmea_main_talker), 1U);
+    EXPECT_EQ(target_.config.nmea.talker, "GP");
 }
 
 TEST_F(Console, StartsAgainAsSaved) {
@@ -276,31 +278,30 @@ TEST_F(Console, StartsAgainAsSaved) {
                 StartsWith("$R: eccf, Current, Boot\r\n  CopyConfigFile, Current, Boot\r\n"));
     say("sem,PVT,30");
     EXPECT_EQ(say("erst,soft,none"), "$R: erst,soft,none\r\n  ResetReceiver, soft, none\r\nSTOP>");
-    EXPECT_EQ(outcome_.restart, StartKind::hot);
-    store_.reload();
-    console_.restart(store_);
-    EXPECT_EQ(store_.signed_value(key::navspg_min_elev), 20);
+    EXPECT_EQ(outcome_.reset->forgotten.kind(), StartKind::hot);
+    console_.restart(target_);
+    EXPECT_EQ(target_.config.elevation_mask.deg(), 20);
     EXPECT_THAT(say("gso,Stream1"), HasSubstr("COM1, DOP, sec1"));
     say("erst,soft,PVTData");
-    EXPECT_EQ(outcome_.restart, StartKind::warm);
+    EXPECT_EQ(outcome_.reset->forgotten.kind(), StartKind::warm);
     say("exeResetReceiver, hard, SatData+PVTData");
-    EXPECT_EQ(outcome_.restart, StartKind::cold);
+    EXPECT_EQ(outcome_.reset->forgotten.kind(), StartKind::cold);
 }
 
 TEST(SilentConsole, SendsNothingUntilItIsToldAndAfterItsFactorySettings) {
     const BoardProfile board = septentrio_board();
-    ConfigStore store(factory_config(board));
-    SeptentrioConsole console(board, store);
+    SeptentrioTarget target = SeptentrioTarget::at_start(board, {});
+    SeptentrioConsole console(board, target);
     const auto say = [&](const char* line) {
-        return to_string(console.execute(line, store, PortId::uart1).answers.at(0));
+        return to_string(console.execute(line, target, PortId::uart1).answers.at(0));
     };
     EXPECT_THAT(say("gso,Stream1"), HasSubstr("  SBFOutput, Stream1, none, none, off\r\n"));
     say("sso,Stream1,COM1,DOP,sec1");
     say("eccf,Current,Boot");
-    console.restart(store);
+    console.restart(target);
     EXPECT_THAT(say("gso,Stream1"), HasSubstr("COM1, DOP, sec1"));
     say("eccf,RxDefault,Boot");
-    console.restart(store);
+    console.restart(target);
     EXPECT_THAT(say("gso,Stream1"), HasSubstr("  SBFOutput, Stream1, none, none, off\r\n"));
 }
 

@@ -119,7 +119,7 @@ public:
     }
     const Fix& step() {
         fix.time += std::chrono::seconds(1);
-        return tracker_.update(Epoch{fix}, store, {}).epoch.fix;
+        return tracker_.update(Epoch{fix}, receiver_config(store, board), {}).epoch.fix;
     }
 
     BoardProfile board = sample_ublox();

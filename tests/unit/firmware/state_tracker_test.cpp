@@ -42,13 +42,15 @@ public:
         fix_.time += period;
         Epoch epoch{fix_};
         epoch.front_end = front_end_;
-        return tracker_.update(epoch, store_, corrections_);
+        return tracker_.update(epoch, receiver_config(store_, board_), corrections_);
     }
     const NavigationState& steps(int count) {
         for (int i = 1; i < count; ++i)
             step();
         return step();
     }
+
+    [[nodiscard]] const BoardProfile& board() const { return board_; }
 
 private:
     BoardProfile board_;
@@ -360,7 +362,7 @@ TEST(StateTracker, CountsTheDistance) {
 
 TEST(StateTracker, CountsTheDistanceOfAUbloxWhileItsOdometerIsOn) {
     BoardProfile board = tracked_board();
-    board.personality = Personality::ublox;
+    board.maker = MakerKind::ublox;
     Tracked t(board);
     t.fix().speed_accuracy = MetresPerSecond(0.05);
     t.tracker().start(t.fix().time, {}, true);
@@ -424,7 +426,7 @@ TEST(StateTracker, KeepsItsFixedPlaceWithoutASolution) {
 TEST(StateTracker, ListsTheSbasSatellitesOfItsScanMaskAlone) {
     const auto listed = [](std::uint64_t mask) {
         BoardProfile board = tracked_board();
-        board.personality = Personality::ublox;
+        board.maker = MakerKind::ublox;
         board.constellations.push_back(sbas);
         Tracked t(board);
         add_satellites(t.fix(), sbas, 20, 5);
@@ -541,12 +543,12 @@ TEST(StateTracker, SurveysAnewAfterTheModeWasOff) {
     survey_in(t.store(), 3, 1'000'000);
     EXPECT_TRUE(t.steps(10).survey->done());
     survey_in(t.store(), 3, 1'000'000);
-    t.tracker().adopt(t.store());
+    t.tracker().adopt(receiver_config(t.store(), t.board()));
     EXPECT_TRUE(t.step().survey->done()) << "the same again";
     t.store().set(in_ram, key::tmode_mode, 0);
-    t.tracker().adopt(t.store());
+    t.tracker().adopt(receiver_config(t.store(), t.board()));
     survey_in(t.store(), 3, 1'000'000);
-    t.tracker().adopt(t.store());
+    t.tracker().adopt(receiver_config(t.store(), t.board()));
     EXPECT_EQ(t.step().survey->positions(), 1U);
     EXPECT_TRUE(t.steps(3).survey->done());
     survey_in(t.store(), 4, 1'000'000);

@@ -60,7 +60,11 @@ struct UbxReport {
         state.fix_ok = false;
     }
 
-    [[nodiscard]] ReportContext context() const { return {board, config, state, ports, PortId::uart1}; }
+    /// What it holds is that of the last call.
+    [[nodiscard]] ReportContext context() const {
+        in_force = receiver_config(config, board);
+        return {board, in_force, state, ports, PortId::uart1};
+    }
 
     [[nodiscard]] std::vector<Bytes> frames(UbxMessageId message) const {
         switch (message.message_class) {
@@ -94,6 +98,7 @@ struct UbxReport {
     ConfigStore config;
     NavigationState state;
     std::vector<PortStatus> ports;
+    mutable ReceiverConfig in_force;
 };
 
 }  // namespace skyloop::firmware

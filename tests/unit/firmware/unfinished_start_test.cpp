@@ -27,7 +27,7 @@ struct Unfinished {
     const NavigationState& step(int epochs = 1) {
         for (int i = 0; i < epochs; ++i) {
             fix.time += 1s;
-            tracker.update(Epoch{fix}, store, {});
+            tracker.update(Epoch{fix}, receiver_config(store, board), {});
         }
         return tracker.state();
     }

@@ -93,9 +93,9 @@ TEST(BoardFile, ShippedBoardsHaveTheMakersFactorySettings) {
     const auto m10 = board("ublox-m10").constellations;
     EXPECT_EQ(std::count(m10.begin(), m10.end(), Constellation::glonass), 0);
     EXPECT_NEAR(board("ublox-f9p").elevation_mask.deg(), 10, 1e-12);
-    EXPECT_EQ(board("msp-gps").personality, firmware::Personality::msp);
-    EXPECT_EQ(board("mavlink-gps-input").personality, firmware::Personality::mavlink);
-    EXPECT_EQ(board("septentrio-sbf").personality, firmware::Personality::sbf);
+    EXPECT_EQ(board("msp-gps").maker, firmware::MakerKind::msp);
+    EXPECT_EQ(board("mavlink-gps-input").maker, firmware::MakerKind::mavlink);
+    EXPECT_EQ(board("septentrio-sbf").maker, firmware::MakerKind::sbf);
     EXPECT_EQ(board("nmea-generic").baud, 9600U);
     EXPECT_EQ(board("nmea-generic").sentences.size(), 8U);
 }

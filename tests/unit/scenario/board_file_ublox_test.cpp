@@ -162,7 +162,7 @@ TEST(BoardFileUblox, ShippedBoardsSavePowerAsTheirMakersSay) {
 TEST(BoardFileUblox, ReadsWhoTheReceiverIsAndItsTimes) {
     const auto board = read_board(every_ublox_key, "mine.toml");
     ASSERT_TRUE(board) << board.error().message;
-    EXPECT_EQ(board->personality, firmware::Personality::ublox);
+    EXPECT_EQ(board->maker, firmware::MakerKind::ublox);
     EXPECT_EQ(board->identity.generation, 10);
     EXPECT_EQ(board->identity.software, "SW");
     EXPECT_EQ(board->identity.hardware, "HW");
@@ -251,7 +251,7 @@ TEST(BoardFileUblox, EveryRateThatABoardTakesHasAMessage) {
     for (const auto& entry :
          std::filesystem::directory_iterator(std::string(SKYLOOP_SOURCE_DIR) + "/boards/receivers")) {
         const BoardProfile board = shipped_board(entry.path().stem().string());
-        if (board.personality != firmware::Personality::ublox) continue;
+        if (board.maker != firmware::MakerKind::ublox) continue;
         const firmware::ConfigValues items = firmware::factory_config(board);
         for (const firmware::OutputMessage& message : firmware::output_messages())
             for (const PortId port : board.ports)

@@ -1,4 +1,6 @@
 // Airoha's PAIR (RECEIVER.md 5.9). What a client sets outlives a restart; 513 saves it for good.
+#include "firmware/airoha/airoha.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,9 +8,7 @@
 #include <map>
 
 #include "base/core/number_text.hpp"
-#include "firmware/config/config_handler.hpp"
-#include "firmware/config/signal_keys.hpp"
-#include "firmware/nmea_commands.hpp"
+#include "firmware/numbered_commands.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -26,7 +26,7 @@ struct PairCommand : NumberedCommand {
 void switch_positioning(PairCommand& c) {
     constexpr int on = 2;
     c.acknowledge(PairResult::done);
-    c.outcome.positioning = c.number == on;
+    c.outcome.navigating = c.number == on;
 }
 
 // 004 hot, 005 warm, 006 cold, 007 cold with factory settings. What is stored comes in force with the restart itself,
@@ -34,7 +34,8 @@ void switch_positioning(PairCommand& c) {
 void restart_pair(PairCommand& c) {
     constexpr int hot = 4, warm = 5, factory = 7;
     c.acknowledge(PairResult::done);
-    c.outcome.restart = c.number == hot ? StartKind::hot : c.number == warm ? StartKind::warm : StartKind::cold;
+    const StartKind kind = c.number == hot ? StartKind::hot : c.number == warm ? StartKind::warm : StartKind::cold;
+    c.outcome.reset = Reset{Reset::Kind::software, Forgotten::of(kind)};
     if (c.number == factory) c.store.clear(in_battery | in_flash);
 }
 
@@ -54,7 +55,7 @@ void set_fix_interval(PairCommand& c) {
 
 void tell_fix_interval(PairCommand& c) {
     c.acknowledge(PairResult::done);
-    c.answer(fmt::format("PAIR051,{}", c.fix_interval()));
+    c.answer(fmt::format("PAIR051,{}", c.store.value(SentenceSettings::fix_interval_ms)));
 }
 
 constexpr std::array<std::string_view, 10> sentence_types{"GGA", "GLL", "GSA", "GSV", "RMC",
@@ -100,7 +101,7 @@ void set_pair_systems(PairCommand& c) {
         if (!on) return c.acknowledge(PairResult::failed);
         wanted.emplace_back(in_order[i], *on == 1);
     }
-    const bool taken = !wanted.empty() && set_systems(c.board, c.store, at_next_start, wanted);
+    const bool taken = !wanted.empty() && c.set_systems(at_next_start, wanted);
     c.acknowledge(taken ? PairResult::done : PairResult::failed);
 }
 
@@ -115,7 +116,7 @@ void set_navigation_mode(PairCommand& c) {
     const auto mode = c.argument(0);
     const auto* row = std::ranges::find(navigation_modes, mode.value_or(-1), &NavigationMode::mode);
     if (row == std::end(navigation_modes)) return c.acknowledge(PairResult::failed);
-    c.store.set(pair_layers, key::navspg_dynmodel, row->dynamic_model);
+    c.store.set(pair_layers, SentenceSettings::dynamic_model, row->dynamic_model);
     c.acknowledge(PairResult::done);
 }
 
@@ -128,7 +129,7 @@ void set_pair_corrections(PairCommand& c) {
 
 void set_pair_sbas(PairCommand& c) {
     const auto on = c.argument_within(0, 0, 1);
-    const bool good = on && set_systems(c.board, c.store, pair_layers, {{Constellation::sbas, *on == 1}});
+    const bool good = on && c.set_systems(pair_layers, {{Constellation::sbas, *on == 1}});
     c.acknowledge(good ? PairResult::done : PairResult::failed);
 }
 
@@ -147,11 +148,10 @@ void save_pair(PairCommand& c) {
 // 864,0,0,baud: in force after the next start.
 void set_pair_speed(PairCommand& c) {
     const auto baud = c.argument(2);
-    const std::uint32_t item = c.from == PortId::uart2 ? key::uart2_baudrate : key::uart1_baudrate;
     if (c.argument(0) != 0 || c.argument(1) != 0 || !baud || *baud <= 0 ||
-        !is_in_range(c.board, item, static_cast<std::uint64_t>(*baud)))
+        !takes_baud(c.board, static_cast<std::uint64_t>(*baud)))
         return c.acknowledge(PairResult::failed);
-    c.store.set(at_next_start, item, static_cast<std::uint64_t>(*baud));
+    c.store.set(at_next_start, c.speed_item(), static_cast<std::uint64_t>(*baud));
     c.acknowledge(PairResult::done);
 }
 
@@ -163,13 +163,9 @@ constexpr CommandRow<PairCommand> pair_rows[] = {
     {513, save_pair},        {864, set_pair_speed},
 };
 
-}  // namespace
-
-CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from) {
-    constexpr std::string_view prefix = "PAIR";
-    if (!sentence.address.starts_with(prefix)) return {};
-    const auto number = number_in<int>(sentence.address.substr(prefix.size()));
-    if (!number || *number < 0 || *number > 999) return {};
+CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, SentenceSettings& store, PortId from) {
+    const auto number = command_number(sentence, "PAIR");
+    if (!number) return {};
     PairCommand command{{sentence, board, store, from, *number}};
     const auto* row = std::ranges::find(pair_rows, *number, &CommandRow<PairCommand>::number);
     if (row == std::end(pair_rows))
@@ -177,6 +173,12 @@ CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& bo
     else
         row->execute(command);
     return command.outcome;
+}
+
+}  // namespace
+
+std::unique_ptr<Maker> make_airoha(const BoardProfile& board, const ReceiverOptions& options) {
+    return std::make_unique<NumberedCommandMaker>(board, options, execute_pair);
 }
 
 }  // namespace skyloop::firmware

@@ -1,13 +1,13 @@
 // MediaTek's PMTK (RECEIVER.md 5.8). What a client sets outlives a restart, but not the battery.
+#include "firmware/mediatek/mediatek.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
 #include "base/core/number_text.hpp"
-#include "firmware/config/config_handler.hpp"
-#include "firmware/config/signal_keys.hpp"
-#include "firmware/nmea_commands.hpp"
+#include "firmware/numbered_commands.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -28,13 +28,14 @@ void accept_pmtk(PmtkCommand& c) { c.acknowledge(PmtkFlag::done); }
 void stand_by(PmtkCommand& c) {
     if (!c.argument_within(0, 0, 1)) return c.acknowledge(PmtkFlag::invalid);
     c.acknowledge(PmtkFlag::done);
-    c.outcome.standby = true;
+    c.outcome.sleep = SleepRequest{.wakes = wake_by_every_pin | wake_by_usb};
 }
 
 // 101 hot, 102 warm, 103 cold, 104 cold with factory settings: no acknowledgement, the start sentences follow.
 void restart_pmtk(PmtkCommand& c) {
     constexpr int hot = 101, warm = 102, factory = 104;
-    c.outcome.restart = c.number == hot ? StartKind::hot : c.number == warm ? StartKind::warm : StartKind::cold;
+    const StartKind kind = c.number == hot ? StartKind::hot : c.number == warm ? StartKind::warm : StartKind::cold;
+    c.outcome.reset = Reset{Reset::Kind::software, Forgotten::of(kind)};
     if (c.number != factory) return;
     c.store.clear(in_battery | in_flash);
     c.store.reload();
@@ -50,17 +51,17 @@ void set_interval(PmtkCommand& c) {
 
 void tell_interval(PmtkCommand& c) {
     c.acknowledge(PmtkFlag::done);
-    c.answer(fmt::format("PMTK500,{},0,0,0.0,0.0", c.fix_interval()));
+    c.answer(fmt::format("PMTK500,{},0,0,0.0,0.0", c.store.value(SentenceSettings::fix_interval_ms)));
 }
 
 // 251: no acknowledgement, the new speed holds at once; 0 is the factory's.
 void set_speed(PmtkCommand& c) {
     const auto baud = c.argument(0);
-    const std::uint32_t item = c.from == PortId::uart2 ? key::uart2_baudrate : key::uart1_baudrate;
+    const std::uint32_t item = c.speed_item();
     if (!baud || *baud < 0) return c.acknowledge(PmtkFlag::invalid);
     const std::uint64_t wanted =
         *baud == 0 ? c.store.stored(ConfigLayer::factory, item).value_or(0) : static_cast<std::uint64_t>(*baud);
-    if (wanted == 0 || !is_in_range(c.board, item, wanted)) return c.acknowledge(PmtkFlag::invalid);
+    if (wanted == 0 || !takes_baud(c.board, wanted)) return c.acknowledge(PmtkFlag::invalid);
     c.store.set(pmtk_layers, item, wanted);
 }
 
@@ -112,13 +113,13 @@ void tell_corrections(PmtkCommand& c) {
 void set_sbas(PmtkCommand& c) {
     const auto on = c.argument_within(0, 0, 1);
     if (!on) return c.acknowledge(PmtkFlag::invalid);
-    const bool taken = set_systems(c.board, c.store, pmtk_layers, {{Constellation::sbas, *on == 1}});
+    const bool taken = c.set_systems(pmtk_layers, {{Constellation::sbas, *on == 1}});
     c.acknowledge(taken ? PmtkFlag::done : PmtkFlag::failed);
 }
 
 void tell_sbas(PmtkCommand& c) {
     c.acknowledge(PmtkFlag::done);
-    c.answer(fmt::format("PMTK513,{}", c.store.value(system_keys_of_signals[1].enable)));
+    c.answer(fmt::format("PMTK513,{}", c.store.value(SentenceSettings::system(Constellation::sbas))));
 }
 
 // 353,gps,glonass,galileo,galileo full,beidou.
@@ -138,7 +139,7 @@ void set_constellations(PmtkCommand& c) {
         else
             wanted.emplace_back(in_order[i], *on == 1);
     }
-    const bool taken = set_systems(c.board, c.store, pmtk_layers, wanted);
+    const bool taken = c.set_systems(pmtk_layers, wanted);
     c.acknowledge(taken ? PmtkFlag::done : PmtkFlag::failed, taken ? echo : "");
 }
 
@@ -148,7 +149,7 @@ void set_speed_threshold(PmtkCommand& c) {
     const std::string_view field = c.sentence.field(0);
     const auto threshold = number_in<double>(field);
     if (!threshold || *threshold < 0 || *threshold > most) return c.acknowledge(PmtkFlag::invalid);
-    c.store.set(pmtk_layers, key::mot_speed_threshold, static_cast<std::uint64_t>(std::llround(*threshold * per_step)));
+    c.store.set(pmtk_layers, SentenceSettings::held_below_cmps, static_cast<std::uint64_t>(std::llround(*threshold * per_step)));
     c.acknowledge(PmtkFlag::done);
 }
 
@@ -182,18 +183,15 @@ constexpr CommandRow<PmtkCommand> pmtk_rows[] = {
     {869, accept_pmtk},
 };
 
-}  // namespace
-
-CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& board, ConfigStore& store, PortId from) {
-    constexpr std::string_view prefix = "PMTK", version = "PQVERNO";
+CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& board, SentenceSettings& store, PortId from) {
+    constexpr std::string_view version = "PQVERNO";
     PmtkCommand command{{sentence, board, store, from}};
     if (sentence.address == version && sentence.field(0) == "R") {
         command.outcome.answers = version_answers(board, version);
         return command.outcome;
     }
-    if (!sentence.address.starts_with(prefix)) return {};
-    const auto number = number_in<int>(sentence.address.substr(prefix.size()));
-    if (!number || *number < 0 || *number > 999) return {};
+    const auto number = command_number(sentence, "PMTK");
+    if (!number) return {};
     command.number = *number;
     const auto* row = std::ranges::find(pmtk_rows, *number, &CommandRow<PmtkCommand>::number);
     if (row == std::end(pmtk_rows))
@@ -201,6 +199,12 @@ CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& bo
     else
         row->execute(command);
     return command.outcome;
+}
+
+}  // namespace
+
+std::unique_ptr<Maker> make_mediatek(const BoardProfile& board, const ReceiverOptions& options) {
+    return std::make_unique<NumberedCommandMaker>(board, options, execute_pmtk);
 }
 
 }  // namespace skyloop::firmware

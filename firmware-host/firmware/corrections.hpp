@@ -1,5 +1,4 @@
 /// Corrections that a client hands in as RTCM 3.
-/// What a u-blox receiver says to assistance, UBX class MGA.
 #pragma once
 
 #include <cstdint>
@@ -9,27 +8,9 @@
 #include "base/geo/frames.hpp"
 #include "base/time/gps_time.hpp"
 #include "firmware/board_profile.hpp"
-#include "firmware/config/config_store.hpp"
 #include "firmware/navigation_state.hpp"
-#include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
-
-/// What a receiver's configuration allows of corrections.
-struct CorrectionLimits {
-    Seconds timeout{60};      ///< of differential corrections (CFG-NAVSPG-CONSTR_DGNSSTO)
-    bool float_only = false;  ///< ambiguities are not fixed (CFG-NAVHPG-DGNSSMODE 2)
-
-    /// As configured; the values above where the receiver does not have an item.
-    static CorrectionLimits of(const ConfigStore& store) {
-        CorrectionLimits limits;
-        if (store.has(key::navspg_dgnss_timeout))
-            limits.timeout = Seconds(static_cast<double>(store.value(key::navspg_dgnss_timeout)));
-        constexpr std::uint64_t rtk_float = 2;
-        limits.float_only = store.has(key::navhpg_dgnssmode) && store.value(key::navhpg_dgnssmode) == rtk_float;
-        return limits;
-    }
-};
 
 /// What is told of one frame of corrections.
 struct CorrectionAnswer {
@@ -53,9 +34,6 @@ public:
     [[nodiscard]] static CorrectionAnswer answer_to_damaged();
     /// What a solution at `now` can be.
     [[nodiscard]] CorrectionStatus status(GpsTime now, const CorrectionLimits& limits) const;
-    [[nodiscard]] CorrectionStatus status(GpsTime now, const ConfigStore& store) const {
-        return status(now, CorrectionLimits::of(store));
-    }
     void reset() { *this = CorrectionInput(ability_); }
 
 private:
@@ -71,21 +49,5 @@ private:
     CorrectionAbility ability_;
     std::optional<Station> station_;
 };
-
-/// infoCode of MGA-ACK-DATA0 (u-blox M8 interface description, 32.16.1). There are 4, not stored, and 5, not ready,
-/// too.
-enum class AssistanceInfo : std::uint8_t {
-    accepted = 0,
-    time_unknown = 1,
-    other_version = 2,
-    wrong_size = 3,
-    unknown_type = 6
-};
-
-/// Whether a message would be used. @param time_known ephemerides, almanacs and AssistNow Offline need the time
-AssistanceInfo judge_assistance(const UbxFrameView& frame, bool time_known);
-
-/// Whether it tells the time: MGA-INI-TIME_UTC and TIME_GNSS.
-bool tells_time(const UbxFrameView& frame);
 
 }  // namespace skyloop::firmware

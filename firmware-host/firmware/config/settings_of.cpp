@@ -1,13 +1,13 @@
-#include <fmt/format.h>
-
+// Items of u-blox and the settings of measurement and solution, both ways.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "firmware/config/config_handler.hpp"
 #include "firmware/config/legacy_keys.hpp"
 #include "firmware/config/signal_keys.hpp"
-#include "firmware/messages/field_values.hpp"
-#include "firmware/receiver_core.hpp"
+#include "firmware/factory_settings.hpp"
+#include "firmware/state_tracker.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -24,6 +24,12 @@ bool is_changed(const ConfigStore& store, std::uint32_t id) {
     return store.has(id) && store.stored(ConfigLayer::factory, id) != store.value(id);
 }
 
+// B1C and not B1I.
+bool takes_b1c(const ConfigStore& store) {
+    constexpr std::uint32_t beidou_enabled = 0x10310022, beidou_b1i = 0x1031000D, beidou_b1c = 0x1031000F;
+    return store.flag(beidou_enabled) && store.flag(beidou_b1c) && !store.flag(beidou_b1i);
+}
+
 // What a client has chosen. Signals of the scenario (`dual_frequency`) that the board has no item for, so that no
 // client can speak of them, stay for as long as their system is on.
 std::set<SystemSignal> chosen_signals(const ConfigStore& store, const std::set<SystemSignal>& scenario) {
@@ -37,54 +43,19 @@ std::set<SystemSignal> chosen_signals(const ConfigStore& store, const std::set<S
     return chosen;
 }
 
-// Measurement and navigation period of the store, made longer by whole measurements until the board can follow.
-Nanoseconds navigation_period_of(const ConfigStore& store, const BoardProfile& board) {
-    const auto measurement = std::chrono::milliseconds(std::max<std::uint64_t>(1, store.value(key::rate_meas)));
-    auto cycles = static_cast<std::int64_t>(std::max<std::uint64_t>(1, store.value(key::rate_nav)));
-    // Periods are whole milliseconds. 18 Hz are stored as 56, and asked for as 55 by who leaves the rest of a division
-    // out: that must not be half of the rate.
-    const auto shortest = std::chrono::milliseconds(static_cast<std::int64_t>(std::floor(1000.0 / board.max_rate_hz)));
-    while (cycles * measurement < shortest)
-        ++cycles;
-    return cycles * measurement;
-}
-
-std::uint64_t measurement_period_of(const BoardProfile& board, double rate_hz) {
-    constexpr double longest_ms = 65535;  // CFG-RATE measRate is a U2
-    const double rate = std::min(rate_hz > 0 ? rate_hz : board.default_rate_hz, board.max_rate_hz);
-    return static_cast<std::uint64_t>(std::llround(std::clamp(1000.0 / rate, 1.0, longest_ms)));
-}
-
 }  // namespace
-
-// CFG-NAVSPG-DYNMODEL: 9 wrist, 10 bike, 11 mower and 12 e-scooter move about as the nearest of the others.
-DynamicModel dynamic_model_of(std::uint64_t number) {
-    using enum DynamicModel;
-    constexpr std::array models{portable,    stationary,  stationary, pedestrian, automotive, sea,       airborne_1g,
-                                airborne_2g, airborne_4g, pedestrian, automotive, pedestrian, pedestrian};
-    return number < models.size() ? models[number] : portable;
-}
-
-std::uint64_t dynamic_model_number(DynamicModel model) {
-    constexpr std::array<std::uint64_t, 8> numbers{0, 2, 3, 4, 5, 6, 7, 8};
-    return numbers[static_cast<std::size_t>(model)];
-}
 
 ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board, const ReceiverSettings& base) {
     ReceiverSettings settings = base;
-    settings.navigation_period = navigation_period_of(store, board);
-    const double rate = 1e9 / static_cast<double>(settings.navigation_period.count());
-    const bool is_fast = board.all_satellites_rate_hz > 0 && rate > board.all_satellites_rate_hz;
-    settings.most_satellites = is_fast ? static_cast<std::size_t>(board.fast_satellites) : 0;
-    if (board.personality == Personality::ublox) {
-        const auto most = static_cast<std::size_t>(std::max<std::uint64_t>(1, store.value(key::navspg_max_svs)));
-        settings.most_satellites = is_fast ? std::min(settings.most_satellites, most) : most;
-    }
+    const auto at_least_1 = [&](std::uint32_t item) { return std::max<std::uint64_t>(1, store.value(item)); };
+    const std::chrono::milliseconds measurement(at_least_1(key::rate_meas));
+    const auto cycles = static_cast<std::int64_t>(at_least_1(key::rate_nav));
+    set_navigation_period(settings, feasible_period(measurement, cycles, board), board);
+    const auto most = static_cast<std::size_t>(at_least_1(key::navspg_max_svs));
+    settings.most_satellites = settings.most_satellites > 0 ? std::min(settings.most_satellites, most) : most;
     if (signals_changed(store) || base.signals.empty()) settings.signals = chosen_signals(store, base.signals);
-    if (board.personality == Personality::ublox) {
-        settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
-        settings.sbas_ranging = store.flag(legacy_key::sbas_ranging);
-    }
+    settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
+    settings.sbas_ranging = store.flag(legacy_key::sbas_ranging);
     settings.beidou_b1c = takes_b1c(store);
     if (is_changed(store, key::navspg_min_elev))
         settings.elevation_mask = Angle::degrees(static_cast<double>(store.signed_value(key::navspg_min_elev)));
@@ -108,7 +79,7 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
     const auto put = [&](std::uint32_t id, std::uint64_t value) {
         if (const auto found = values.find(id); found != values.end()) found->second = value;
     };
-    put(key::rate_meas, measurement_period_of(board, options.rate_hz));
+    put(key::rate_meas, measurement_period_ms(board, options.rate_hz));
     const ReceiverSettings& s = options.settings;
     put(key::navspg_dynmodel, dynamic_model_number(s.dynamic_model));
     put(key::navspg_min_elev, static_cast<std::uint8_t>(std::lround(s.elevation_mask.deg())));
@@ -129,19 +100,6 @@ ConfigValues initial_config(const BoardProfile& board, const ReceiverOptions& op
     // Of the two names of one measured signal a receiver that has both has one on, as at the factory.
     if (factory_b1i) put(*factory_b1i != 0 ? beidou_b1c : beidou_b1i, 0);
     return values;
-}
-
-std::optional<RefusedOptions> refused_options(const BoardProfile& board, const ReceiverOptions& options) {
-    if (board.personality != Personality::ublox) return std::nullopt;
-    const ConfigValues values = initial_config(board, options);
-    if (const auto* item = first_out_of_range(board, values))
-        return RefusedOptions{item->first, fmt::format("{} is {}, which {} itself would refuse",
-                                                       find_config_key(item->first)->name, item->second, board.name)};
-    if (is_consistent(board, values)) return std::nullopt;
-    return RefusedOptions{std::nullopt,
-                          board.name +
-                              " itself would refuse these systems: none that gives a position, too many, or "
-                              "signals that exclude each other"};
 }
 
 }  // namespace skyloop::firmware

@@ -1,0 +1,10 @@
+/// Airoha's receivers: sentences, PAIR commands.
+#pragma once
+
+#include "firmware/maker.hpp"
+
+namespace skyloop::firmware {
+
+std::unique_ptr<Maker> make_airoha(const BoardProfile& board, const ReceiverOptions& options);
+
+}  // namespace skyloop::firmware
