@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "firmware/maker.hpp"
+#include "firmware/core/maker.hpp"
 
 namespace skyloop::firmware {
 

@@ -17,7 +17,7 @@
 #include "base/core/files.hpp"
 #include "commands.hpp"
 #include "file_streams.hpp"
-#include "firmware/config/config_keys.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "messages.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 #include "run_options.hpp"

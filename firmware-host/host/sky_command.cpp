@@ -9,7 +9,7 @@
 #include "base/time/utc_time.hpp"
 #include "commands.hpp"
 #include "data_folders.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 #include "run/scenario/board_files.hpp"
 #include "run_session.hpp"
 #include "sky_parts.hpp"

@@ -1,8 +1,8 @@
 /// What it costs to make UBX messages, against copying their bytes.
 #include <benchmark/benchmark.h>
 
-#include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "base/time/utc_time.hpp"
 #include "bench/thread_time.hpp"
-#include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "run/emulator/assembly.hpp"
 #include "support/four_systems.hpp"
 #include "support/oracle_table.hpp"

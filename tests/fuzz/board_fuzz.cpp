@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "require.hpp"
 #include "run/scenario/board_files.hpp"

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "firmware/config/config_handler.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "require.hpp"
 

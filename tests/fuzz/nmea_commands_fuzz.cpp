@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "firmware/factory_settings.hpp"
+#include "firmware/core/factory_settings.hpp"
 #include "firmware/makers.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "../unit/firmware/sample_epochs.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "require.hpp"
 
@@ -17,8 +17,7 @@ using namespace std::chrono_literals;
 // The first byte chooses whose commands are understood, and the generation.
 BoardProfile fuzzed_board(std::uint8_t choice) {
     BoardProfile board = sample_ublox();
-    constexpr MakerKind personalities[] = {MakerKind::ublox, MakerKind::ublox, MakerKind::mtk,
-                                             MakerKind::airoha};
+    constexpr MakerKind personalities[] = {MakerKind::ublox, MakerKind::ublox, MakerKind::mtk, MakerKind::airoha};
     board.maker = personalities[choice % 4];
     board.identity.generation = 6 + choice / 4 % 5;
     board.power.save_modes = board.power.backup = true;

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "firmware/corrections.hpp"
+#include "firmware/core/corrections.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"

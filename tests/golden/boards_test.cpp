@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
-#include "firmware/config/config_keys.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 #include "receiver/protocol/known_sbf.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
@@ -133,8 +133,8 @@ BoardProfile with_everything(BoardProfile board) {
             board.sbf_blocks.emplace_back(Block::message_name);
             return false;
         });
-    if (board.maker == MakerKind::msp || board.maker == MakerKind::msp_v1 ||
-        board.maker == MakerKind::mavlink || board.maker == MakerKind::ublox)
+    if (board.maker == MakerKind::msp || board.maker == MakerKind::msp_v1 || board.maker == MakerKind::mavlink ||
+        board.maker == MakerKind::ublox)
         return board;
     board.sentences.clear();
     for (std::size_t i = 0; i < std::size(firmware::nmea_sentence_names); ++i)
@@ -224,7 +224,7 @@ class GoldenBoard : public testing::TestWithParam<std::string> {};
 TEST_P(GoldenBoard, SendsAndListsTheSameBytes) {
     const std::vector<StreamPiece> pieces = stream_of(GetParam());
     ASSERT_FALSE(pieces.empty());
-    const fs::path file = recorded / (GetParam() + ".txt");
+    const fs::path file = recorded / (GetParam() + ".hex");
     if (std::getenv("SKYLOOP_RECORD_BOARDS") != nullptr) {
         std::ofstream out(file);
         for (const StreamPiece& piece : pieces)

@@ -30,8 +30,8 @@ GOOD = {
     "src/world/flow/fix.hpp": "#include <Eigen/Core>\n",
     "src/base/core/detail/private.hpp": "",
     "src/base/core/a.cpp": '#include "base/core/a.hpp"\n#include <zlib.h>\n#include <fmt/format.h>\n#include "detail/private.hpp"\n',
-    "firmware-host/firmware/receiver.hpp": '#include "world/flow/fix.hpp"\n',
-    "firmware-host/host/main.cpp": '#include "firmware/receiver.hpp"\n#include <CLI/CLI.hpp>\n#include <sys/stat.h>\n',
+    "firmware-host/firmware/core/receiver.hpp": '#include "world/flow/fix.hpp"\n',
+    "firmware-host/host/main.cpp": '#include "firmware/core/receiver.hpp"\n#include <CLI/CLI.hpp>\n#include <sys/stat.h>\n',
 }
 
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/config/config_keys.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_names.hpp"

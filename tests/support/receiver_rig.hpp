@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/time/utc_time.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_fields.hpp"
 #include "receiver/protocol/ubx_mon.hpp"

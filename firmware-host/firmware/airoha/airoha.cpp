@@ -8,7 +8,7 @@
 #include <map>
 
 #include "base/core/number_text.hpp"
-#include "firmware/numbered_commands.hpp"
+#include "firmware/sentences/numbered_commands.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -163,7 +163,8 @@ constexpr CommandRow<PairCommand> pair_rows[] = {
     {513, save_pair},        {864, set_pair_speed},
 };
 
-CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, SentenceSettings& store, PortId from) {
+CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, SentenceSettings& store,
+                            PortId from) {
     const auto number = command_number(sentence, "PAIR");
     if (!number) return {};
     PairCommand command{{sentence, board, store, from, *number}};

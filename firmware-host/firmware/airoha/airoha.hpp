@@ -1,7 +1,7 @@
 /// Airoha's receivers: sentences, PAIR commands.
 #pragma once
 
-#include "firmware/maker.hpp"
+#include "firmware/core/maker.hpp"
 
 namespace skyloop::firmware {
 

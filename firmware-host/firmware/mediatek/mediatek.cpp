@@ -7,7 +7,7 @@
 #include <array>
 
 #include "base/core/number_text.hpp"
-#include "firmware/numbered_commands.hpp"
+#include "firmware/sentences/numbered_commands.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -149,7 +149,8 @@ void set_speed_threshold(PmtkCommand& c) {
     const std::string_view field = c.sentence.field(0);
     const auto threshold = number_in<double>(field);
     if (!threshold || *threshold < 0 || *threshold > most) return c.acknowledge(PmtkFlag::invalid);
-    c.store.set(pmtk_layers, SentenceSettings::held_below_cmps, static_cast<std::uint64_t>(std::llround(*threshold * per_step)));
+    c.store.set(pmtk_layers, SentenceSettings::held_below_cmps,
+                static_cast<std::uint64_t>(std::llround(*threshold * per_step)));
     c.acknowledge(PmtkFlag::done);
 }
 
@@ -183,7 +184,8 @@ constexpr CommandRow<PmtkCommand> pmtk_rows[] = {
     {869, accept_pmtk},
 };
 
-CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& board, SentenceSettings& store, PortId from) {
+CommandOutcome execute_pmtk(const SentenceView& sentence, const BoardProfile& board, SentenceSettings& store,
+                            PortId from) {
     constexpr std::string_view version = "PQVERNO";
     PmtkCommand command{{sentence, board, store, from}};
     if (sentence.address == version && sentence.field(0) == "R") {

@@ -1,7 +1,7 @@
 /// MediaTek's receivers: sentences, PMTK commands.
 #pragma once
 
-#include "firmware/maker.hpp"
+#include "firmware/core/maker.hpp"
 
 namespace skyloop::firmware {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "firmware/navigation_state.hpp"
+#include "firmware/core/navigation_state.hpp"
 
 namespace skyloop::firmware {
 namespace {

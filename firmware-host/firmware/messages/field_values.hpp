@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "base/time/utc_time.hpp"
-#include "firmware/navigation_state.hpp"
+#include "firmware/core/navigation_state.hpp"
 #include "receiver/protocol/ubx_fields.hpp"
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"

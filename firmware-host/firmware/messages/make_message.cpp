@@ -1,8 +1,8 @@
 #include "firmware/messages/make_message.hpp"
 
 #include "base/core/bytes.hpp"
-#include "firmware/messages/nmea_report.hpp"
-#include "firmware/port_id.hpp"
+#include "firmware/core/port_id.hpp"
+#include "firmware/sentences/nmea_report.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 

@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
+#include "firmware/core/navigation_state.hpp"
 #include "firmware/messages/field_values.hpp"
-#include "firmware/messages/nmea_report.hpp"
-#include "firmware/navigation_state.hpp"
+#include "firmware/sentences/nmea_report.hpp"
 
 namespace skyloop::firmware {
 

@@ -4,10 +4,10 @@
 #include <chrono>
 #include <cmath>
 
-#include "firmware/base_station.hpp"
+#include "firmware/core/base_station.hpp"
+#include "firmware/core/port_id.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/port_id.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "world/gnss/constants.hpp"
 
@@ -15,7 +15,6 @@ namespace skyloop::firmware {
 namespace {
 
 using namespace std::chrono_literals;
-
 
 // The messages of observations by their ids in class F5, which are what their numbers have beyond 1000.
 struct MsmOutput {

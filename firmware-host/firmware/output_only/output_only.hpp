@@ -1,13 +1,13 @@
 /// Receivers that understand nothing and speak MSP or MAVLink.
 #pragma once
 
-#include "firmware/messages/other_protocols.hpp"
-#include "firmware/sentence_maker.hpp"
+#include "firmware/output_only/other_protocols.hpp"
+#include "firmware/sentences/sentence_maker.hpp"
 
 namespace skyloop::firmware {
 
-/// Sends frames of its own protocol by UART1, before sentences where its board has any. These protocols have no word for
-/// dead reckoning.
+/// Sends frames of its own protocol by UART1, before sentences where its board has any. These protocols have no word
+/// for dead reckoning.
 class FrameMaker : public SentenceMaker {
 public:
     /// Whole frames of one epoch, in order.

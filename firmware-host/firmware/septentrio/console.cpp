@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "base/core/number_text.hpp"
-#include "firmware/state_tracker.hpp"
+#include "firmware/core/state_tracker.hpp"
 #include "firmware/septentrio/rover_and_station.hpp"
 
 namespace skyloop::firmware {
@@ -87,7 +87,8 @@ StartKind start_after(const std::string& erased) {
 
 }  // namespace
 
-SeptentrioConsole::SeptentrioConsole(const BoardProfile& board, const SeptentrioTarget& start) : board_(board), start_(start) {
+SeptentrioConsole::SeptentrioConsole(const BoardProfile& board, const SeptentrioTarget& start)
+    : board_(board), start_(start) {
     adopt();
     factory_ = at_start_ = state_.settings;
 }
@@ -100,9 +101,10 @@ void SeptentrioConsole::adopt() {
                      {"Stream1", "COM1", fmt::format("{}", fmt::join(board_.sbf_blocks, "+")), "OnChange"});
     for (const PortId port : board_.ports)
         if (is_uart(port))
-            settings.set(group_of("COMSettings"), {std::string(descriptor_of(port)),
-                                                   fmt::format("baud{}", start_.config.port(port).baud)});
-    settings.set(group_of("ElevationMask"), {"PVT", fmt::format("{}", std::lround(start_.config.elevation_mask.deg()))});
+            settings.set(group_of("COMSettings"),
+                         {std::string(descriptor_of(port)), fmt::format("baud{}", start_.config.port(port).baud)});
+    settings.set(group_of("ElevationMask"),
+                 {"PVT", fmt::format("{}", std::lround(start_.config.elevation_mask.deg()))});
     std::vector<std::string_view> systems, signals;
     for (const SystemName& system : system_names)
         if (start_.systems.contains(system.constellation)) systems.push_back(system.name);
@@ -282,8 +284,7 @@ void SeptentrioConsole::apply_motion(SeptentrioTarget& to) const {
     if (!model) return;
     to.config.limits.dynamic_model = static_cast<int>(*model);
     const bool as_at_start = to.config.limits.dynamic_model == start_.config.limits.dynamic_model;
-    to.config.settings.dynamic_model =
-        as_at_start ? start_.config.settings.dynamic_model : dynamic_model_of(*model);
+    to.config.settings.dynamic_model = as_at_start ? start_.config.settings.dynamic_model : dynamic_model_of(*model);
 }
 
 void SeptentrioConsole::apply_talker(SeptentrioTarget& to) const {
@@ -371,7 +372,8 @@ SeptentrioTarget SeptentrioTarget::at_start(const BoardProfile& board, const Rec
     const std::set<SystemSignal>& measured = target.config.settings.signals;
     for (const Constellation system : systems_in_order) {
         const auto of_it = [&](const SystemSignal& signal) { return signal.constellation == system; };
-        const std::set<SystemSignal> own = std::ranges::any_of(measured, of_it) ? measured : factory_signals(board, system);
+        const std::set<SystemSignal> own =
+            std::ranges::any_of(measured, of_it) ? measured : factory_signals(board, system);
         std::ranges::copy_if(own, std::inserter(target.signals, target.signals.end()), of_it);
     }
     return target;

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
-#include "firmware/messages/sbf_messages.hpp"
-#include "firmware/navigation_state.hpp"
-#include "firmware/factory_settings.hpp"
-#include "firmware/maker.hpp"
+#include "firmware/core/factory_settings.hpp"
+#include "firmware/core/maker.hpp"
+#include "firmware/core/navigation_state.hpp"
+#include "firmware/septentrio/sbf_messages.hpp"
 #include "firmware/septentrio/settings.hpp"
 #include "receiver/protocol/sbf_cartesian_blocks.hpp"
 

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "base/core/number_text.hpp"
-#include "firmware/config/config_keys.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/messages/sbf_messages.hpp"
 #include "firmware/septentrio/console.hpp"
 #include "firmware/septentrio/rover_and_station.hpp"
+#include "firmware/septentrio/sbf_messages.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/sbf_raw_blocks.hpp"
 
 namespace skyloop::firmware {

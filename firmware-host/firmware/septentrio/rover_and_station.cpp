@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/core/number_text.hpp"
+#include "firmware/core/port_id.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/port_id.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 
 namespace skyloop::firmware {
@@ -34,24 +34,23 @@ bool allows(const SeptentrioSettings& settings, CorrectionState state) {
     return true;
 }
 
-constexpr std::array named_signals{
-    NamedSignal{{Constellation::gps, Signal::l1}, "GPSL1CA"},
-    NamedSignal{{Constellation::gps, Signal::l2}, "GPSL2C"},
-    NamedSignal{{Constellation::gps, Signal::l5}, "GPSL5"},
-    NamedSignal{{Constellation::sbas, Signal::l1}, "GEOL1"},
-    NamedSignal{{Constellation::galileo, Signal::l1}, "GALL1BC"},
-    NamedSignal{{Constellation::galileo, Signal::l5}, "GALE5a"},
-    NamedSignal{{Constellation::galileo, Signal::e5b}, "GALE5b"},
-    NamedSignal{{Constellation::beidou, Signal::b1i}, "BDSB1I"},
-    NamedSignal{{Constellation::beidou, Signal::e5b}, "BDSB2I"},
-    NamedSignal{{Constellation::beidou, Signal::b3i}, "BDSB3I"},
-    NamedSignal{{Constellation::qzss, Signal::l1}, "QZSL1CA"},
-    NamedSignal{{Constellation::qzss, Signal::l2}, "QZSL2C"},
-    NamedSignal{{Constellation::qzss, Signal::l5}, "QZSL5"},
-    NamedSignal{{Constellation::glonass, Signal::g1}, "GLOL1CA"},
-    NamedSignal{{Constellation::glonass, Signal::g2}, "GLOL2CA"},
-    NamedSignal{{Constellation::navic, Signal::l5}, "NAVICL5"},
-    NamedSignal{{Constellation::beidou, Signal::l5}, "BDSB2a"}};
+constexpr std::array named_signals{NamedSignal{{Constellation::gps, Signal::l1}, "GPSL1CA"},
+                                   NamedSignal{{Constellation::gps, Signal::l2}, "GPSL2C"},
+                                   NamedSignal{{Constellation::gps, Signal::l5}, "GPSL5"},
+                                   NamedSignal{{Constellation::sbas, Signal::l1}, "GEOL1"},
+                                   NamedSignal{{Constellation::galileo, Signal::l1}, "GALL1BC"},
+                                   NamedSignal{{Constellation::galileo, Signal::l5}, "GALE5a"},
+                                   NamedSignal{{Constellation::galileo, Signal::e5b}, "GALE5b"},
+                                   NamedSignal{{Constellation::beidou, Signal::b1i}, "BDSB1I"},
+                                   NamedSignal{{Constellation::beidou, Signal::e5b}, "BDSB2I"},
+                                   NamedSignal{{Constellation::beidou, Signal::b3i}, "BDSB3I"},
+                                   NamedSignal{{Constellation::qzss, Signal::l1}, "QZSL1CA"},
+                                   NamedSignal{{Constellation::qzss, Signal::l2}, "QZSL2C"},
+                                   NamedSignal{{Constellation::qzss, Signal::l5}, "QZSL5"},
+                                   NamedSignal{{Constellation::glonass, Signal::g1}, "GLOL1CA"},
+                                   NamedSignal{{Constellation::glonass, Signal::g2}, "GLOL2CA"},
+                                   NamedSignal{{Constellation::navic, Signal::l5}, "NAVICL5"},
+                                   NamedSignal{{Constellation::beidou, Signal::l5}, "BDSB2a"}};
 
 }  // namespace
 

@@ -13,7 +13,7 @@
 
 #include "base/core/bytes.hpp"
 #include "base/geo/geodetic.hpp"
-#include "firmware/navigation_state.hpp"
+#include "firmware/core/navigation_state.hpp"
 #include "firmware/septentrio/settings.hpp"
 
 namespace skyloop::firmware {
@@ -27,7 +27,8 @@ void withhold_forbidden(const SeptentrioSettings& settings, NavigationState& sta
 /// What stands where it was told (PVTMode Static) and solves the time alone has that place for its position.
 void tell_given_place(NavigationState& state);
 
-/// The number of the dynamic model (dynamic_model_of()) for a motion of ReceiverDynamics; nothing for a word that is not known.
+/// The number of the dynamic model (dynamic_model_of()) for a motion of ReceiverDynamics; nothing for a word that is
+/// not known.
 std::optional<std::uint64_t> model_of_motion(std::string_view motion);
 
 /// A signal and its name, such as GPSL2C.

@@ -1,6 +1,6 @@
 #include "firmware/septentrio/septentrio.hpp"
 
-#include "firmware/sentence_maker.hpp"
+#include "firmware/sentences/sentence_maker.hpp"
 #include "firmware/septentrio/rover_and_station.hpp"
 
 namespace skyloop::firmware {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
-#include "firmware/port_id.hpp"
+#include "firmware/core/port_id.hpp"
 
 namespace skyloop::firmware {
 

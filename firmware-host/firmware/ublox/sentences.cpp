@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "base/core/number_text.hpp"
-#include "firmware/config/legacy_keys.hpp"
+#include "firmware/ublox/config/legacy_keys.hpp"
 #include "firmware/ublox/ublox.hpp"
 
 namespace skyloop::firmware {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "firmware/config/legacy_support.hpp"
 #include "firmware/ublox/assistance.hpp"
+#include "firmware/ublox/config/legacy_support.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_cfg_device.hpp"
 #include "receiver/protocol/ubx_hardware.hpp"
@@ -86,8 +86,7 @@ CommandOutcome UbloxMaker::receive(const StreamPiece& piece, const Situation& as
 
 CommandOutcome UbloxMaker::receive_frame(const UbxFrameView& frame, const Situation& asked) {
     if (asked.faults.refused.contains(frame.id)) return with_verdict(false, frame.id);
-    CommandOutcome outcome =
-        frame.id.message_class == class_cfg ? configure(frame, asked) : command(frame, asked);
+    CommandOutcome outcome = frame.id.message_class == class_cfg ? configure(frame, asked) : command(frame, asked);
     outcome.to = frame.id;
     return outcome;
 }
@@ -220,8 +219,8 @@ CommandOutcome UbloxMaker::receive_sentence(ByteSpan line, const Situation& aske
     const bool passes = port.out.nmea && (port.nmea_texts >> text_warning & 1) != 0;
     const std::string warning = std::string(sentence->address.substr(0, shown)) + " inv format";
     if (passes)
-        outcome.answers.push_back(to_bytes(
-            encode(Txt{nmea_talker(board(), now), 1, 1, text_warning, warning}, nmea_format(board(), now))));
+        outcome.answers.push_back(
+            to_bytes(encode(Txt{nmea_talker(board(), now), 1, 1, text_warning, warning}, nmea_format(board(), now))));
     return outcome;
 }
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/config/config_handler.hpp"
-#include "firmware/maker.hpp"
+#include "firmware/core/maker.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 
 namespace skyloop::firmware {
 

@@ -13,7 +13,7 @@
 
 #include "base/core/result.hpp"
 #include "base/geo/geoid.hpp"
-#include "firmware/board_profile.hpp"
+#include "firmware/core/board_profile.hpp"
 #include "run/emulator/data_folders.hpp"
 #include "run/emulator/emulator.hpp"
 #include "run/emulator/load_scene.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/geo/local_frame.hpp"
-#include "firmware/firmware_faults.hpp"
+#include "firmware/core/firmware_faults.hpp"
 #include "run/emulator/command_queue.hpp"
 #include "run/emulator/station.hpp"
 #include "run/emulator/timing.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/time/gps_time.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 #include "run/fault/wire_damage.hpp"
 #include "wire/transport/line_garbler.hpp"
 #include "wire/transport/transport.hpp"

@@ -11,7 +11,7 @@
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
 #include "base/time/gps_time.hpp"
-#include "firmware/port_id.hpp"
+#include "firmware/core/port_id.hpp"
 
 namespace skyloop::inline run {
 

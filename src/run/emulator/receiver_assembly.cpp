@@ -9,7 +9,7 @@
 #include "base/core/files.hpp"
 #include "detail/recorded_files.hpp"
 #include "detail/recording_formats.hpp"
-#include "firmware/config/config_keys.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "run/client/open_client.hpp"
 #include "run/scenario/board_files.hpp"
 #include "wire/actuator/actuator_uri.hpp"

@@ -8,7 +8,7 @@
 
 #include "base/geo/frames.hpp"
 #include "detail/run_warnings.hpp"
-#include "firmware/state_tracker.hpp"
+#include "firmware/core/state_tracker.hpp"
 #include "run/fault/fault_kind.hpp"
 
 namespace skyloop::inline run {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 #include "run/emulator/dialogue.hpp"
 #include "run/emulator/link.hpp"
 #include "run/emulator/moving_base.hpp"

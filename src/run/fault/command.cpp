@@ -8,7 +8,7 @@
 
 #include "base/core/words.hpp"
 #include "base/geo/geodetic.hpp"
-#include "firmware/firmware_faults.hpp"
+#include "firmware/core/firmware_faults.hpp"
 #include "run/fault/fault_kind.hpp"
 #include "run/fault/timeline_keys.hpp"
 

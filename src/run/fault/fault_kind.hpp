@@ -16,7 +16,7 @@
 
 #include "base/core/random.hpp"
 #include "base/core/result.hpp"
-#include "firmware/firmware_faults.hpp"
+#include "firmware/core/firmware_faults.hpp"
 #include "run/fault/parameters.hpp"
 #include "run/fault/wire_damage.hpp"
 #include "world/flow/observations.hpp"

@@ -13,7 +13,7 @@
 
 #include "base/core/bytes.hpp"
 #include "base/core/units.hpp"
-#include "firmware/navigation_state.hpp"
+#include "firmware/core/navigation_state.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "run/fault/command.hpp"
 #include "run/fault/timeline.hpp"

@@ -10,7 +10,7 @@
 
 #include "base/core/bytes.hpp"
 #include "detail/fault_catalogue.hpp"
-#include "firmware/firmware_faults.hpp"
+#include "firmware/core/firmware_faults.hpp"
 
 namespace skyloop::inline run {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/geo/local_frame.hpp"
 #include "base/time/utc_time.hpp"
 #include "firmware/messages/field_values.hpp"
-#include "firmware/messages/other_protocols.hpp"
+#include "firmware/output_only/other_protocols.hpp"
 
 namespace skyloop::inline run {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "base/core/bytes.hpp"
 #include "base/time/utc_time.hpp"
-#include "firmware/navigation_state.hpp"
+#include "firmware/core/navigation_state.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
 #include "run/fault/run_observer.hpp"
 #include "run/output/output_settings.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
-#include "firmware/board_profile.hpp"
+#include "firmware/core/board_profile.hpp"
 #include "wire/devices/device_profile.hpp"
 
 namespace skyloop::inline run {

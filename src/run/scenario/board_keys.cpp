@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "firmware/config/config_handler.hpp"
 #include "firmware/septentrio/settings.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 
 namespace skyloop::inline run {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "base/core/words.hpp"
 #include "detail/scenario_keys.hpp"
-#include "firmware/board_profile.hpp"
-#include "firmware/config/config_handler.hpp"
-#include "firmware/config/config_keys.hpp"
-#include "firmware/config/config_store.hpp"
+#include "firmware/core/board_profile.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
+#include "firmware/ublox/config/config_store.hpp"
 
 namespace skyloop::inline run {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/geo/simulator_frames.hpp"
-#include "firmware/board_profile.hpp"
+#include "firmware/core/board_profile.hpp"
 #include "motion/trajectory/generated_path.hpp"
 #include "motion/trajectory/geometric_paths.hpp"
 #include "motion/trajectory/live_path.hpp"

@@ -12,8 +12,8 @@
 
 #include "../firmware/sample_epochs.hpp"
 #include "base/geo/local_frame.hpp"
-#include "firmware/config/config_keys.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_nav.hpp"

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/config/config_keys.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
 #include "sample_epochs.hpp"

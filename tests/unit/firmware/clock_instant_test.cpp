@@ -1,4 +1,4 @@
-#include "firmware/navigation_state.hpp"
+#include "firmware/core/navigation_state.hpp"
 
 #include <gtest/gtest.h>
 

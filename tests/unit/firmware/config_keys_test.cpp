@@ -1,4 +1,4 @@
-#include "firmware/config/config_keys.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "firmware/config/config_store.hpp"
+#include "firmware/ublox/config/config_store.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

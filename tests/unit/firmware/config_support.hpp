@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/config/config_handler.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 
 namespace skyloop::firmware {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "config_support.hpp"
-#include "firmware/config/config_handler.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 
 namespace skyloop::firmware {
 namespace {

@@ -1,4 +1,4 @@
-#include "firmware/corrections.hpp"
+#include "firmware/core/corrections.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "firmware/solution_covariance.hpp"
+#include "firmware/core/solution_covariance.hpp"
 
 #include <gtest/gtest.h>
 

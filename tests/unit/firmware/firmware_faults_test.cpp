@@ -1,8 +1,8 @@
 // The receiver's own part of faults: what is told against what it goes on with, and what befalls it.
 #include <gtest/gtest.h>
 
-#include "firmware/messages/other_protocols.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
+#include "firmware/output_only/other_protocols.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"

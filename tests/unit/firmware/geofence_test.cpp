@@ -1,4 +1,4 @@
-#include "firmware/geofence.hpp"
+#include "firmware/core/geofence.hpp"
 
 #include <gtest/gtest.h>
 

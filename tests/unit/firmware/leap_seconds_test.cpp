@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "firmware/config/config_handler.hpp"
-#include "firmware/state_tracker.hpp"
+#include "firmware/core/state_tracker.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "sample_epochs.hpp"
 
 namespace skyloop::firmware {

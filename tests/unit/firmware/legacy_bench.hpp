@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/config/config_handler.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 
 namespace skyloop::firmware {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "firmware/state_tracker.hpp"
+#include "firmware/core/state_tracker.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_services.hpp"
 #include "receiver/protocol/ubx_time.hpp"

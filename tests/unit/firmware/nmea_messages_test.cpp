@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "firmware/messages/nmea_report.hpp"
+#include "firmware/sentences/nmea_report.hpp"
 #include "sample_reports.hpp"
 
 namespace skyloop::firmware {

@@ -1,5 +1,5 @@
+#include "firmware/output_only/other_protocols.hpp"
 #include "firmware/makers.hpp"
-#include "firmware/messages/other_protocols.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "firmware/port.hpp"
+#include "firmware/core/port.hpp"
 
 #include <gtest/gtest.h>
 

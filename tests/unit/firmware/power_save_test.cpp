@@ -1,13 +1,13 @@
 // When a receiver that saves power goes on and off (NEO-M9N integration manual, 3.11.2; MAX-M10S, 2.7.2).
-#include "firmware/power_save.hpp"
+#include "firmware/core/power_save.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "firmware/config/config_handler.hpp"
-#include "firmware/config/config_keys.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "sample_epochs.hpp"
 
 namespace skyloop::firmware {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/stream_splitter.hpp"

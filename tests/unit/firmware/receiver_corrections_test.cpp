@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "base/geo/geodetic.hpp"
+#include "firmware/core/receiver.hpp"
 #include "firmware/messages/make_message.hpp"
-#include "firmware/receiver.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"

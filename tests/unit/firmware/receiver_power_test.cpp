@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "firmware/config/config_keys.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"

@@ -1,4 +1,4 @@
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,8 @@
 #include <cmath>
 
 #include "base/core/random.hpp"
-#include "firmware/config/config_handler.hpp"
-#include "firmware/config/config_keys.hpp"
-#include "firmware/config/config_handler.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "base/geo/geodetic.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/receiver.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "ubx_reports.hpp"

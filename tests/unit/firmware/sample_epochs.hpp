@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/time/utc_time.hpp"
-#include "firmware/board_profile.hpp"
+#include "firmware/core/board_profile.hpp"
 #include "world/flow/epoch.hpp"
 
 namespace skyloop::firmware {

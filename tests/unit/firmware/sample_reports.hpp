@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/nmea_messages.hpp"
 #include "sample_epochs.hpp"
 

@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "base/geo/geodetic.hpp"
-#include "firmware/config/config_handler.hpp"
-#include "firmware/messages/sbf_messages.hpp"
 #include "firmware/septentrio/console.hpp"
 #include "firmware/septentrio/rover_and_station.hpp"
+#include "firmware/septentrio/sbf_messages.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/sbf_raw_blocks.hpp"
 #include "sample_epochs.hpp"
 #include "world/gnss/broadcast_lnav.hpp"

@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-#include "firmware/base_station.hpp"
-#include "firmware/config/config_handler.hpp"
-#include "firmware/messages/sbf_messages.hpp"
-#include "firmware/receiver.hpp"
+#include "firmware/core/base_station.hpp"
+#include "firmware/core/receiver.hpp"
 #include "firmware/septentrio/console.hpp"
+#include "firmware/septentrio/sbf_messages.hpp"
 #include "firmware/septentrio/settings.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/sbf_blocks.hpp"
 #include "receiver/protocol/stream_splitter.hpp"

@@ -1,4 +1,4 @@
-#include "firmware/solution_covariance.hpp"
+#include "firmware/core/solution_covariance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "base/geo/local_frame.hpp"
-#include "firmware/config/config_keys.hpp"
-#include "firmware/config/legacy_keys.hpp"
-#include "firmware/messages/other_protocols.hpp"
-#include "firmware/messages/sbf_messages.hpp"
-#include "firmware/state_tracker.hpp"
+#include "firmware/core/state_tracker.hpp"
+#include "firmware/output_only/other_protocols.hpp"
+#include "firmware/septentrio/sbf_messages.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
+#include "firmware/ublox/config/legacy_keys.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "sample_correlation.hpp"
 #include "ubx_reports.hpp"

@@ -1,10 +1,10 @@
-#include "firmware/state_tracker.hpp"
+#include "firmware/core/state_tracker.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "firmware/config/config_handler.hpp"
-#include "firmware/config/legacy_keys.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
+#include "firmware/ublox/config/legacy_keys.hpp"
 #include "sample_epochs.hpp"
 
 namespace skyloop::firmware {

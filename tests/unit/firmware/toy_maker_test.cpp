@@ -14,9 +14,7 @@ using testing::HasSubstr;
 class ToyReceiver : public testing::Test {
 protected:
     ToyReceiver() { receiver_.start(now_); }
-    void send(const std::string& body) {
-        receiver_.input(PortId::uart1, to_bytes(Sentence(body).finish()), now_);
-    }
+    void send(const std::string& body) { receiver_.input(PortId::uart1, to_bytes(Sentence(body).finish()), now_); }
     // Until so much later, with an epoch at its end.
     std::string run(Nanoseconds length) {
         now_ += length;

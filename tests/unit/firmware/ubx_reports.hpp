@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/config/config_handler.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/ubx_fields.hpp"
 #include "sample_epochs.hpp"
 

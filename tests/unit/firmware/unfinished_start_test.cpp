@@ -1,9 +1,9 @@
 // What a start knows that comes before an earlier one has found out all that it had forgotten.
 #include <gtest/gtest.h>
 
-#include "firmware/config/config_handler.hpp"
-#include "firmware/receiver.hpp"
-#include "firmware/state_tracker.hpp"
+#include "firmware/core/receiver.hpp"
+#include "firmware/core/state_tracker.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "sample_epochs.hpp"
 

@@ -1,9 +1,9 @@
 // What a board has no word for is not reported either: verdicts and outputs tell what its messages could.
 #include <gtest/gtest.h>
 
-#include "firmware/config/config_handler.hpp"
+#include "firmware/core/state_tracker.hpp"
 #include "firmware/makers.hpp"
-#include "firmware/state_tracker.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "sample_epochs.hpp"
 
 namespace skyloop::firmware {

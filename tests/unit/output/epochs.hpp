@@ -3,7 +3,7 @@
 
 #include "base/geo/local_frame.hpp"
 #include "base/time/utc_time.hpp"
-#include "firmware/navigation_state.hpp"
+#include "firmware/core/navigation_state.hpp"
 #include "run/fault/run_observer.hpp"
 
 namespace skyloop::test {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "firmware/config/config_handler.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "run/scenario/board_files.hpp"
 

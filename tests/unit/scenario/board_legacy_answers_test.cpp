@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "firmware/config/config_handler.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "run/scenario/board_files.hpp"
 
 namespace skyloop {

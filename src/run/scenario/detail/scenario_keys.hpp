@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/geo/simulator_frames.hpp"
-#include "firmware/board_profile.hpp"
+#include "firmware/core/board_profile.hpp"
 #include "run/scenario/scenario.hpp"
 #include "run/scenario/scenario_file.hpp"
 #include "run/verdict/expectation.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "base/core/number_text.hpp"
-#include "firmware/factory_settings.hpp"
-#include "firmware/maker.hpp"
+#include "firmware/core/factory_settings.hpp"
+#include "firmware/core/maker.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 
 namespace skyloop::firmware {
@@ -28,7 +28,8 @@ public:
         const auto period_ms = number_in<int>(sentence->field(1));
         if (sentence->field(0) != "RATE" || !period_ms || *period_ms < 1) return answer("PTOY,NO");
         ++revision_;
-        set_navigation_period(now_.settings, feasible_period(std::chrono::milliseconds(*period_ms), 1, board()), board());
+        set_navigation_period(now_.settings, feasible_period(std::chrono::milliseconds(*period_ms), 1, board()),
+                              board());
         return answer("PTOY,OK");
     }
     DueMessages due(PortId port, EpochMessages& made, const FirmwareFaults&) override {

@@ -1,0 +1,244 @@
+/// What distinguishes one receiver model from another, as data.
+/// What a board sends and answers.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/core/bytes.hpp"
+#include "base/core/units.hpp"
+#include "firmware/core/port_id.hpp"
+#include "receiver/protocol/nmea_satellites.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
+#include "world/gnss/satellite.hpp"
+#include "world/gnss/signal.hpp"
+
+namespace skyloop::firmware {
+
+/// Sentences that a receiver can send periodically, in the order in which they leave within one epoch unless the board
+/// gives another (`BoardProfile::messages`).
+enum class NmeaSentence { rmc, vtg, gga, gns, gsa, gsv, gll, gst, zda, gbs, dtm, grs, vlw, ths };
+inline constexpr std::string_view nmea_sentence_names[] = {"RMC", "VTG", "GGA", "GNS", "GSA", "GSV", "GLL",
+                                                           "GST", "ZDA", "GBS", "DTM", "GRS", "VLW", "THS"};
+
+/// A sentence and every how many epochs it is sent.
+struct SentenceRate {
+    NmeaSentence sentence;
+    int every_epochs = 1;
+};
+
+/// Whose commands a receiver understands, or which protocol other than NMEA and UBX it speaks, without taking commands.
+enum class MakerKind {
+    mute,     ///< nobody's
+    ublox,    ///< UBX and PUBX
+    mtk,      ///< MediaTek PMTK
+    airoha,   ///< Airoha PAIR
+    msp,      ///< MSP2_SENSOR_GPS of the MultiWii Serial Protocol
+    msp_v1,   ///< its older MSP_SET_RAW_GPS
+    mavlink,  ///< MAVLink GPS_INPUT
+    sbf       ///< Septentrio's blocks
+};
+
+/// At which speed the answer leaves to a message that changes the speed of the port it came by.
+enum class SpeedChangeAnswer { at_new_speed, at_old_speed, lost };
+
+/// What a receiver does with a legacy configuration message.
+enum class LegacyAnswer {
+    apply,   ///< takes it
+    ignore,  ///< acknowledges it, and that is all
+    refuse,  ///< ACK-NAK
+    silence
+};
+
+/// What a receiver says to CFG-VALSET, VALGET and VALDEL.
+enum class ValueConfigSupport { full, refuse, silence };
+
+/// Who it says it is (MON-VER, SEC-UNIQID, MON-GNSS, boot banner).
+struct Identity {
+    int generation = 8;                   ///< of u-blox: 6, 7, 8, 9, 10
+    std::string software;                 ///< swVersion
+    std::string hardware;                 ///< hwVersion
+    std::vector<std::string> extensions;  ///< of MON-VER, at most 30 characters each
+    Bytes unique_id;                      ///< five bytes, or six on M10
+    /// Texts of the TXT notices at start; whole sentences without checksum where they begin with $.
+    std::vector<std::string> banner;
+    std::vector<std::string> version_answers;  ///< to PMTK605, PAIR020: sentences from $, without checksum
+};
+
+/// What its USB port says it is (USB 2.0, table 9-8); on u-blox also what CFG-USB answers.
+struct UsbDescription {
+    std::uint16_t vendor_id = 0, product_id = 0;
+    std::uint16_t release = 0x0100;  ///< bcdDevice: 0x0301 is 3.01
+    std::string manufacturer;        ///< at most 31 characters, as of the other texts
+    std::string product;
+    std::string serial;  ///< empty: it has none
+};
+
+/// Times of starting and answering.
+struct Timing {
+    Seconds boot{0.5};                                       ///< from power to the first byte
+    Seconds first_epoch{1.0};                                ///< from the end of the banner
+    Seconds answer{0.003};                                   ///< from a message's last byte to the first of its answer
+    Seconds flash_write{0.1};                                ///< more for what is saved
+    Seconds signal_restart{0.5};                             ///< without output after a change of the tracked signals
+    Seconds latency_deviation{0};                            ///< 1 σ of the solution latency
+    Seconds coasting{0};                                     ///< for which a lost solution goes on by its velocity
+    Seconds cold_start{26}, warm_start{24}, hot_start{1.5};  ///< to the first fix (RECEIVER.md 4.8)
+};
+
+/// How a receiver saves power, as it is built (every value in boards/README.md).
+struct PowerAbility {
+    bool save_modes = false;          ///< CFG-PM: on and off, and cyclic tracking
+    bool backup = false;              ///< RXM-PMREQ, and CFG-PWR where the board takes it
+    bool backup_needs_force = false;  ///< RXM-PMREQ without the flag `force` does nothing
+    bool keeps_ram = false;           ///< what is configured in RAM outlives being off
+    bool banner = true;               ///< the texts of a start come after being off, too
+    std::vector<std::string> texts;   ///< in place of these; empty: they themselves
+    Seconds wake{0.4};                ///< from an edge, or from its time, until it hears
+    Seconds acquisition{120};         ///< without a fix, where the user leaves that to the receiver
+    Seconds blind_acquisition{15};    ///< the same while it hears no satellite; 0: as long as otherwise
+    Seconds search_margin{1};         ///< so much ahead of the search grid it wakes
+    Seconds download{30};             ///< of ephemerides, every half hour
+};
+
+/// What becomes of the corrections of a base station (RECEIVER.md 4.12).
+struct CorrectionAbility {
+    bool rtk = false;         ///< resolves carrier phases; without, corrections make a differential solution
+    Seconds float_after{5};   ///< from the first complete set
+    Seconds fixed_after{15};  ///< the same
+    Seconds fixed_held{15};   ///< without new corrections, until the solution is float again
+};
+
+/// Where units of one model differ, or no document says what it does: each a key of the board file.
+struct Quirks {
+    ValueConfigSupport value_config = ValueConfigSupport::full;
+    bool single_key_valget = false;  ///< a VALGET for several keys is refused (M10 SPG 5.10)
+    bool hardware_reset_clears_battery = true;
+    SpeedChangeAnswer speed_change = SpeedChangeAnswer::at_new_speed;
+    bool answers_unknown_nmea = false;  ///< "… inv format" (M8)
+    bool overflow_notice = false;       ///< a TXT says that messages did not fit into the transmit buffer
+    bool default_interference_monitor = false;
+    bool voltage_control = false;     ///< watches its antenna's supply from the factory on
+    std::optional<int> leap_seconds;  ///< that it believes until it has decoded them; nothing: the right ones
+};
+
+/// The blocks of CFG-GNSS as the board answers them.
+struct GnssBlock {
+    std::uint8_t gnss_id = 0, reserved_channels = 0, max_channels = 0;
+    std::uint32_t flags = 0;  ///< as on the wire; bit 0 is replaced by what is configured
+};
+
+/// How fields of sentences look, where makers differ; the defaults are u-blox's (RECEIVER.md 5.3, 5.8 to 5.10).
+struct NmeaStyle {
+    int speed_decimals = 3;         ///< of RMC (knots) and VTG (knots, km/h)
+    int course_decimals = 2;        ///< of RMC and VTG
+    bool course_always = false;     ///< the course is printed even at rest and frozen
+    bool satellites_padded = true;  ///< numSV of GGA and GNS in two digits: "07", not "7"
+    int dop_decimals = 2;
+    std::string station_field;         ///< of GGA without corrections: empty, or "0000"
+    std::string beidou_talker = "GB";  ///< or "BD"
+    std::string qzss_talker = "GQ";    ///< or "QZ"; of versions in which QZSS has its own
+    bool gst_ellipse = true;           ///< GST tells the axes of the error ellipse (F9P: not)
+    bool gst_padded = false;           ///< its fields look like "004.0", the last like "00014" (MTK)
+    /// Without a fix DOPs are empty, units of heights stay, speed and course are 0.00 (MTK; u-blox: 99.99, and
+    /// nothing).
+    bool zeros_without_fix = false;
+    bool unknown_date_is_1980 = false;  ///< before the date is known RMC says 050180 and a time since power-on (MTK)
+};
+
+/// When a fix is withheld for export: height over 18 288 m (60 000 ft), speed over 515 m/s (1000 knots), limits that
+/// some makers read as one rule and others as two (FEEDS.md 2.5).
+enum class ExportLimits { off, both_exceeded, either_exceeded };
+
+/// Speeds of a UART that a board may have, bit/s.
+inline constexpr std::uint32_t slowest_baud = 1200, fastest_baud = 8'000'000;
+
+/// One receiver model (boards/receivers/*.toml; every key in boards/README.md).
+struct BoardProfile {
+    std::string name;
+    std::string description;
+    MakerKind maker = MakerKind::mute;
+    Identity identity;
+    Timing timing;
+    Quirks quirks;
+    CorrectionAbility corrections;
+    PowerAbility power;
+
+    std::uint32_t baud = 9600;  ///< of UART1 at the factory
+    std::uint32_t transmit_buffer_bytes = 4096;
+    /// In the buffer, up to which the next message of an epoch is generated. Invented: the acknowledgement of an M10 at
+    /// 9600 baud can take "over a second" (PX4-GPSDrivers, src/ubx.cpp).
+    std::uint32_t generated_ahead_bytes = 1024;
+    std::vector<PortId> ports{PortId::uart1};
+    std::optional<UsbDescription> usb;  ///< nothing: it has no USB of its own
+    std::vector<std::uint32_t>
+        bauds;  ///< that it can be set to, ascending; empty: all from slowest_baud to fastest_baud
+
+    std::vector<Constellation> constellations;    ///< enabled at the factory
+    bool dual_frequency = false;                  ///< tracks the second signal of each system from the factory on
+    SecondBand second_band = SecondBand::l2;      ///< where that signal is
+    bool bands_together = false;                  ///< refuses one of a system's two bands without the other
+    std::vector<Constellation> first_band_alone;  ///< systems that then go with the first of them all the same
+    int most_systems = 4;                         ///< of GPS, GLONASS, BeiDou and Galileo that it tracks at once
+    /// Sets of items of CFG-SIGNAL that may not all be 1 at once: what its front end cannot receive together.
+    std::vector<std::set<std::uint32_t>> signal_conflicts;
+    double default_rate_hz = 1;
+    double max_rate_hz = 10;
+    double all_satellites_rate_hz = 0;  ///< beyond which it solves with `fast_satellites` of them; 0: with all at any
+    int fast_satellites = 16;
+    int least_measurement_period_ms = 25;  ///< shorter ones are stored as this (CFG-RATE), or refused (VALSET)
+    Angle elevation_mask = Angle::degrees(5);
+    bool dynamic_limits = true;                      ///< no fix beyond those of the dynamic model, as u-blox has them
+    ExportLimits export_limits = ExportLimits::off;  ///< on top of 500 m/s, beyond which no fix is told
+
+    NmeaVersion nmea_version = NmeaVersion::v4_0;
+    NmeaNumbering satellite_numbering = NmeaNumbering::strict;
+    std::string main_talker;      ///< "GP", "GN", …; empty: by the enabled constellations
+    int coordinate_decimals = 5;  ///< digits of the minutes of latitude and longitude
+    int time_decimals = 2;
+    int max_listed_satellites = 12;         ///< numSV of GGA stops here (12 in strict NMEA)
+    MetresPerSecond course_min_speed{0.1};  ///< slower than this, the course is left empty
+    NmeaStyle style;
+    std::vector<SentenceRate> sentences;  ///< factory output
+    /// And of a Septentrio, blocks and groups of them; none: it is silent until it is configured.
+    std::vector<std::string> sbf_blocks;
+    Seconds solution_latency{0.05};  ///< from the epoch instant to the first byte of its output
+
+    /// What it can send, in the order in which it leaves within an epoch; sentences among it.
+    std::vector<UbxMessageId> messages;
+    std::set<UbxMessageId> unsent;                ///< what it has rates for in CFG-MSGOUT and does not send
+    std::set<UbxMessageId> polled;                ///< what it answers but does not send by itself
+    std::map<UbxMessageId, LegacyAnswer> legacy;  ///< legacy configuration messages that it knows
+    std::vector<GnssBlock> gnss_blocks;           ///< of CFG-GNSS
+    std::uint8_t gnss_channels_hardware = 0, gnss_channels_used = 0;
+    std::uint8_t gnss_supported = 0,
+                 gnss_simultaneous = 0;             ///< of MON-GNSS: bits 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo
+    bool comms_output_port = false;                 ///< MON-COMMS tells by which port it leaves
+    std::size_t galileo_words = 8;                  ///< of a pair of pages in RXM-SFRBX; a ninth tells nothing
+    std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
+    std::set<std::uint32_t> absent_keys;            ///< items that it does not have
+};
+
+/// Whether a UART of the board can be set to a speed.
+inline bool takes_baud(const BoardProfile& board, std::uint64_t baud) {
+    return board.bauds.empty() ? baud >= slowest_baud && baud <= fastest_baud
+                               : std::find(board.bauds.begin(), board.bauds.end(), baud) != board.bauds.end();
+}
+
+/// Whether a message can go out periodically.
+inline bool sends(const BoardProfile& board, UbxMessageId message) {
+    return std::find(board.messages.begin(), board.messages.end(), message) != board.messages.end();
+}
+
+/// Whether the board has a message at all: it sends or answers it.
+inline bool knows(const BoardProfile& board, UbxMessageId message) {
+    return board.polled.contains(message) || sends(board, message);
+}
+
+}  // namespace skyloop::firmware

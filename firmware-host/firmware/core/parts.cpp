@@ -1,0 +1,77 @@
+#include "firmware/core/parts.hpp"
+
+#include "receiver/protocol/ubx_frame.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+BoardProfile with_sentences(BoardProfile board) {
+    if (board.messages.empty())
+        for (const std::string_view name : nmea_sentence_names)
+            board.messages.push_back(find_output_message(name)->id);
+    return board;
+}
+
+bool passes(const PortProtocols& protocols, UbxMessageId message) {
+    if (message.message_class == class_nmea || message.message_class == class_pubx) return protocols.nmea;
+    return message.message_class == class_rtcm ? protocols.rtcm3 : protocols.ubx;
+}
+
+}  // namespace
+
+UbxMessageId protocol_of(const Bytes& message) {
+    constexpr std::uint8_t rtcm3_sync = 0xD3;
+    if (message.front() == ubx_sync_1) return {};
+    return {message.front() == rtcm3_sync ? class_rtcm : class_nmea, 0};
+}
+
+ReceiverParts::ReceiverParts(BoardProfile profile, const ReceiverOptions& options, const MakerRow& row)
+    : board(with_sentences(std::move(profile))), maker(row.make(board, options)) {
+    for (const PortId port : board.ports)
+        units.emplace_back(port, config().port(port).baud, board);
+}
+
+void ReceiverParts::look_at_ports() {
+    statuses.clear();
+    for (PortUnit& unit : units) {
+        unit.status.pending = unit.transmit.pending();
+        statuses.push_back(unit.status);
+    }
+}
+
+ReportContext ReceiverParts::context(PortId port) {
+    look_at_ports();
+    return context(port, *reported);
+}
+
+ReportContext ReceiverParts::context(PortId port, const NavigationState& state) const {
+    return {board, config(), state, statuses, port};
+}
+
+bool ReceiverParts::lets_out(PortId port, UbxMessageId message) const {
+    const PortConfig& of_port = config().port(port);
+    return of_port.on && passes(of_port.out, message);
+}
+
+void ReceiverParts::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {
+    if (!faults.mute) outbox.queue(port, std::vector<ByteSpan>(messages.begin(), messages.end()), now);
+}
+
+void ReceiverParts::send_in_turn(PortId port, const std::vector<ByteSpan>& messages, GpsTime now) {
+    if (!faults.mute) outbox.queue_in_turn(port, messages, now);
+}
+
+void ReceiverParts::send_text(int level, const std::string& text, GpsTime now) {
+    for (const PortId port : board.ports)
+        send(port, make_text_message(level, text, context(port)), now);
+}
+
+void ReceiverParts::restart_ports() {
+    for (PortUnit& unit : units) {
+        const PortTotals totals = unit.totals;
+        unit = PortUnit(unit.id, config().port(unit.id).baud, board);
+        unit.totals = totals;
+    }
+}
+
+}  // namespace skyloop::firmware

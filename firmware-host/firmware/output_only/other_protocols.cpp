@@ -1,0 +1,143 @@
+#include "firmware/output_only/other_protocols.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "firmware/messages/field_values.hpp"
+
+namespace skyloop::firmware {
+namespace {
+
+// GPS_INPUT_IGNORE_FLAGS of common.xml.
+constexpr std::uint16_t ignore_alt = 1, ignore_hdop = 2, ignore_vdop = 4, every_ignore_flag = 0xFF;
+
+void put_msp_place(const Fix& fix, MspSensorGps& to) {
+    to.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
+    to.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
+    to.msl_altitude = field<std::int32_t>(msl_height(fix) * 100);
+}
+
+void put_msp_estimates(const Fix& fix, MspSensorGps& to) {
+    to.h_acc = field<std::uint16_t>(fix.horizontal_accuracy.value() * 100);
+    to.v_acc = field<std::uint16_t>(fix.vertical_accuracy.value() * 100);
+    to.speed_acc = field<std::uint16_t>(fix.speed_accuracy.value() * 100);
+    to.dop = fix.dop.hdop > 0 ? field<std::uint16_t>(fix.dop.hdop * 100) : std::uint16_t{9999};
+    to.vel_north = field<std::int32_t>(fix.velocity.north * 100);
+    to.vel_east = field<std::int32_t>(fix.velocity.east * 100);
+    to.vel_down = field<std::int32_t>(fix.velocity.down * 100);
+}
+
+void put_msp_clock(const NavigationState& state, MspSensorGps& to) {
+    const UtcTime utc = reported_utc(state);
+    to.year = static_cast<std::uint16_t>(utc.year);
+    to.month = static_cast<std::uint8_t>(utc.month);
+    to.day = static_cast<std::uint8_t>(utc.day);
+    to.hour = static_cast<std::uint8_t>(utc.hour);
+    to.minute = static_cast<std::uint8_t>(utc.minute);
+    to.second = static_cast<std::uint8_t>(utc.second);
+}
+
+// POSIX leaves leap seconds out.
+std::uint64_t posix_microseconds(const Fix& fix) {
+    const std::int64_t gps_us =
+        std::chrono::duration_cast<std::chrono::microseconds>(to_gps_time(gps_stamp(fix.time)).time_since_epoch())
+            .count();
+    return static_cast<std::uint64_t>(gps_us + (gps_epoch_posix_s - fix.leap_seconds) * 1'000'000);
+}
+
+void put_mavlink_place(const Fix& fix, MavlinkGpsInput& to) {
+    to.lat = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
+    to.lon = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
+    to.alt = static_cast<float>(msl_height(fix));
+    to.ignore_flags &= static_cast<std::uint16_t>(~ignore_alt);
+}
+
+void put_mavlink_estimates(const Fix& fix, MavlinkGpsInput& to) {
+    if (fix.dop.hdop > 0)
+        to.hdop = static_cast<float>(fix.dop.hdop);
+    else
+        to.ignore_flags |= ignore_hdop;
+    if (fix.dop.vdop > 0)
+        to.vdop = static_cast<float>(fix.dop.vdop);
+    else
+        to.ignore_flags |= ignore_vdop;
+    to.vn = static_cast<float>(fix.velocity.north);
+    to.ve = static_cast<float>(fix.velocity.east);
+    to.vd = static_cast<float>(fix.velocity.down);
+    to.speed_accuracy = static_cast<float>(fix.speed_accuracy.value());
+    to.horiz_accuracy = static_cast<float>(fix.horizontal_accuracy.value());
+    to.vert_accuracy = static_cast<float>(fix.vertical_accuracy.value());
+}
+
+}  // namespace
+
+MspSensorGps msp_sensor_gps(const NavigationState& state) {
+    const Fix& fix = state.epoch.fix;
+    MspSensorGps message;
+    // Betaflight takes any number but 0 for a fix; to ArduPilot and iNav 0 is none, too.
+    if (has_solution(state)) message.fix_type = autopilot_fix_type(state);
+    message.satellites = reported_satellites(fix);
+    const WeekAndTow stamp = gps_stamp(state);
+    if (state.time.date) message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));
+    if (state.time.time) message.ms_tow = whole_milliseconds(stamp);
+    if (state.time.time && state.time.date) put_msp_clock(state, message);
+    if (has_place(state)) put_msp_place(fix, message);
+    if (!has_solution(state)) return message;
+    put_msp_estimates(fix, message);
+    if (state.course) message.course = field<std::uint16_t>(state.course->deg() * 100);
+    if (const auto attitude = pair_attitude(state))
+        message.true_yaw = field<std::uint16_t>(attitude->heading_deg * 100);
+    return message;
+}
+
+MspSetRawGps msp_set_raw_gps(const NavigationState& state) {
+    const Fix& fix = state.epoch.fix;
+    MspSetRawGps message;
+    message.satellites = reported_satellites(fix);
+    if (!has_place(state)) return message;
+    message.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
+    message.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
+    message.altitude = field<std::uint16_t>(msl_height(fix));
+    if (!has_solution(state)) return message;
+    message.fix = 1;
+    message.speed = field<std::uint16_t>(fix.speed.value() * 100);
+    return message;
+}
+
+MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
+    const Fix& fix = state.epoch.fix;
+    MavlinkGpsInput message;
+    message.fix_type = autopilot_fix_type(state);
+    message.satellites_visible = reported_satellites(fix);
+    const WeekAndTow stamp = gps_stamp(state);
+    if (state.time.date) message.time_week = field<std::uint16_t>(static_cast<double>(stamp.week));
+    if (state.time.time) message.time_week_ms = whole_milliseconds(stamp);
+    if (state.time.time && state.time.date) message.time_usec = posix_microseconds(fix);
+    message.ignore_flags = every_ignore_flag;
+    if (has_place(state)) put_mavlink_place(fix, message);
+    if (!has_solution(state)) return message;
+    message.ignore_flags = 0;
+    put_mavlink_estimates(fix, message);
+    if (const auto attitude = pair_attitude(state)) {
+        const auto yaw = field<std::uint16_t>(attitude->heading_deg * 100);
+        message.yaw = yaw == 0 ? std::uint16_t{36000} : yaw;
+    }
+    return message;
+}
+
+// A ground station takes a component for alive by a heartbeat a second, whatever the rate of its data.
+std::vector<Bytes> mavlink_messages(const NavigationState& state, MavlinkSent& sent) {
+    MavlinkSource source;
+    std::vector<Bytes> frames;
+    const auto add = [&](const auto& message) {
+        source.sequence = sent.sequence++;
+        frames.push_back(encode_mavlink(source, message));
+    };
+    const auto second = static_cast<std::int64_t>(std::floor(state.since_boot.value()));
+    if (std::exchange(sent.beat_second, second) != second) add(MavlinkHeartbeat{});
+    add(mavlink_gps_input(state));
+    return frames;
+}
+
+}  // namespace skyloop::firmware

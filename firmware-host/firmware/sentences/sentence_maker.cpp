@@ -1,0 +1,67 @@
+#include "firmware/sentences/sentence_maker.hpp"
+
+#include <algorithm>
+
+#include "firmware/ublox/config/config_keys.hpp"
+
+namespace skyloop::firmware {
+
+std::vector<BoardSentence> board_sentences(const BoardProfile& board) {
+    std::vector<BoardSentence> sentences;
+    for (const UbxMessageId id : board.messages) {
+        const OutputMessage* message = find_output_message(id);
+        const auto* const name = std::ranges::find(nmea_sentence_names, message == nullptr ? "" : message->name);
+        if (name != std::end(nmea_sentence_names))
+            sentences.push_back({id, static_cast<std::size_t>(name - std::begin(nmea_sentence_names))});
+    }
+    return sentences;
+}
+
+std::uint64_t factory_rate(const BoardProfile& board, std::size_t sentence) {
+    const auto found = std::ranges::find(board.sentences, static_cast<NmeaSentence>(sentence), &SentenceRate::sentence);
+    return found == board.sentences.end() ? 0 : static_cast<std::uint64_t>(found->every_epochs);
+}
+
+bool is_due(const BoardSentence& sentence, std::uint64_t every, const EpochMessages& made,
+            const FirmwareFaults& faults) {
+    return every != 0 && made.state().epoch_index % every == 0 && !faults.withheld.contains(sentence.id);
+}
+
+SentenceMaker::SentenceMaker(const BoardProfile& board, const ReceiverOptions& options, bool reports_dead_reckoning)
+    : Maker(board),
+      settings_(board, options),
+      sentences_(board_sentences(board)),
+      reports_dead_reckoning_(reports_dead_reckoning) {}
+
+const ReceiverConfig& SentenceMaker::config() const {
+    if (config_revision_ == settings_.revision()) return config_;
+    config_ = settings_.config();
+    config_.reports_dead_reckoning = reports_dead_reckoning_;
+    config_revision_ = settings_.revision();
+    return config_;
+}
+
+CommandOutcome SentenceMaker::receive(const StreamPiece&, const Situation&) { return {}; }
+
+DueMessages SentenceMaker::due(PortId port, EpochMessages& made, const FirmwareFaults& faults) {
+    DueMessages due;
+    const PortConfig& of_port = config().port(port);
+    if (!of_port.on || !of_port.out.nmea) return due;
+    for (const BoardSentence& sentence : sentences_) {
+        if (!is_due(sentence, settings_.value(SentenceSettings::rate(sentence.index, port)), made, faults)) continue;
+        const std::vector<Bytes>& messages = made.of(sentence.id, port, {});
+        due.frames.insert(due.frames.end(), messages.begin(), messages.end());
+    }
+    return due;
+}
+
+void SentenceMaker::restart(bool keeps_ram) {
+    if (!keeps_ram) settings_.reload();
+}
+
+void SentenceMaker::forget_settings() {
+    settings_.clear(in_battery | in_flash);
+    settings_.reload();
+}
+
+}  // namespace skyloop::firmware

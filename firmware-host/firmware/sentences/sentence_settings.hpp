@@ -1,0 +1,48 @@
+/// What receivers of sentences can be set to, whoever made them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware/core/factory_settings.hpp"
+#include "firmware/core/layered_values.hpp"
+
+namespace skyloop::firmware {
+
+/// Settings by our own names, "fix_interval_ms" or "GGA_uart1".
+class SentenceSettings : public LayeredValues {
+public:
+    /// @param board it must outlive this
+    SentenceSettings(const BoardProfile& board, const ReceiverOptions& options);
+
+    static constexpr std::uint32_t fix_interval_ms = 1, dynamic_model = 2, held_below_cmps = 3, sbas_corrections = 4;
+    static constexpr std::uint32_t baud(PortId port) { return 10 + static_cast<std::uint32_t>(port); }
+    static constexpr std::uint32_t rtcm_in(PortId port) { return 20 + static_cast<std::uint32_t>(port); }
+    static constexpr std::uint32_t system(Constellation c) { return 30 + static_cast<std::uint32_t>(c); }
+    /// Every how many epochs a port sends a sentence, "GGA"; nothing for a name that stands for none.
+    [[nodiscard]] static std::optional<std::uint32_t> rate(std::string_view sentence, PortId port);
+    [[nodiscard]] static std::uint32_t rate(std::size_t sentence, PortId port) {
+        return 100 + static_cast<std::uint32_t>(sentence * port_count) + static_cast<std::uint32_t>(port);
+    }
+
+    /// Whether the board could go on with these systems on: it has them, and one of them gives a position.
+    [[nodiscard]] bool can_have(const std::vector<std::pair<Constellation, bool>>& wanted) const;
+    /// What the receiver does by them.
+    [[nodiscard]] ReceiverConfig config() const;
+
+protected:
+    [[nodiscard]] std::string name_of(std::uint32_t key) const override;
+    [[nodiscard]] std::optional<std::uint32_t> key_of(std::string_view name) const override;
+    [[nodiscard]] std::uint64_t cut(std::uint32_t, std::uint64_t value) const override { return value & 0xFFFF'FFFFu; }
+    [[nodiscard]] std::size_t bytes_of(std::uint32_t) const override { return 4; }
+
+private:
+    void put_systems(ReceiverConfig& config) const;
+
+    const BoardProfile& board_;
+    ReceiverConfig factory_;
+    std::map<std::uint32_t, std::string> names_;
+};
+
+}  // namespace skyloop::firmware
