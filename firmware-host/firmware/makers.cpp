@@ -12,7 +12,7 @@ namespace skyloop::firmware {
 namespace {
 
 // In the order of MakerKind.
-constexpr auto rows = std::to_array<MakerRow>({
+constexpr auto makers = std::to_array<MakerRow>({
     {"mute", make_sentences},
     {"ublox", make_ublox, ublox_refuses},
     {"mtk", make_mediatek},
@@ -25,9 +25,9 @@ constexpr auto rows = std::to_array<MakerRow>({
 
 }  // namespace
 
-std::span<const MakerRow> maker_rows() { return rows; }
+std::span<const MakerRow> maker_rows() { return makers; }
 
-const MakerRow& maker_row(MakerKind kind) { return rows.at(static_cast<std::size_t>(kind)); }
+const MakerRow& maker_row(MakerKind kind) { return makers.at(static_cast<std::size_t>(kind)); }
 
 std::optional<RefusedOptions> refused_options(const BoardProfile& board, const ReceiverOptions& options) {
     const MakerRow& row = maker_row(board.maker);

@@ -26,6 +26,9 @@ namespace skyloop::firmware {
 enum class NmeaSentence { rmc, vtg, gga, gns, gsa, gsv, gll, gst, zda, gbs, dtm, grs, vlw, ths };
 inline constexpr std::string_view nmea_sentence_names[] = {"RMC", "VTG", "GGA", "GNS", "GSA", "GSV", "GLL",
                                                            "GST", "ZDA", "GBS", "DTM", "GRS", "VLW", "THS"};
+/// Their ids in class F0, as u-blox's CFG-MSG numbers them.
+inline constexpr std::uint8_t nmea_sentence_ids[] = {0x04, 0x05, 0x00, 0x0D, 0x02, 0x03, 0x01,
+                                                     0x07, 0x08, 0x09, 0x0A, 0x06, 0x0F, 0x0E};
 
 /// A sentence and every how many epochs it is sent.
 struct SentenceRate {

@@ -7,8 +7,8 @@ namespace {
 
 BoardProfile with_sentences(BoardProfile board) {
     if (board.messages.empty())
-        for (const std::string_view name : nmea_sentence_names)
-            board.messages.push_back(find_output_message(name)->id);
+        for (const std::uint8_t id : nmea_sentence_ids)
+            board.messages.push_back({class_nmea, id});
     return board;
 }
 

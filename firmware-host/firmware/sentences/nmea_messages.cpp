@@ -188,7 +188,7 @@ namespace {
 // What a receiver says of a position that it never had (capture in RECEIVER.md 5.7).
 constexpr Metres no_horizontal_accuracy{5303356}, no_vertical_accuracy{3750039};
 
-std::string navigation_status(const NmeaReport& r) {
+std::string status_of_rmc(const NmeaReport& r) {
     if (r.fix().type == FixType::time_only) return "TT";
     if (!r.valid) return "NF";
     switch (r.fix().type) {
@@ -208,7 +208,7 @@ PubxPosition pubx_position(const NmeaReport& r) {
     const Fix& fix = r.fix();
     PubxPosition m;
     m.time = r.time;
-    m.status = navigation_status(r);
+    m.status = status_of_rmc(r);
     m.horizontal_accuracy = no_horizontal_accuracy;
     m.vertical_accuracy = no_vertical_accuracy;
     if (!state.position_known && !r.solved) return m;

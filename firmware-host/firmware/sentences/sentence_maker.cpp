@@ -2,19 +2,22 @@
 
 #include <algorithm>
 
-#include "firmware/ublox/config/config_keys.hpp"
-
 namespace skyloop::firmware {
 
 std::vector<BoardSentence> board_sentences(const BoardProfile& board) {
     std::vector<BoardSentence> sentences;
     for (const UbxMessageId id : board.messages) {
-        const OutputMessage* message = find_output_message(id);
-        const auto* const name = std::ranges::find(nmea_sentence_names, message == nullptr ? "" : message->name);
-        if (name != std::end(nmea_sentence_names))
-            sentences.push_back({id, static_cast<std::size_t>(name - std::begin(nmea_sentence_names))});
+        const auto* const found = std::ranges::find(nmea_sentence_ids, id.id);
+        if (id.message_class == class_nmea && found != std::end(nmea_sentence_ids))
+            sentences.push_back({id, static_cast<std::size_t>(found - std::begin(nmea_sentence_ids))});
     }
     return sentences;
+}
+
+std::optional<UbxMessageId> sentence_message(std::string_view name) {
+    const auto* const found = std::ranges::find(nmea_sentence_names, name);
+    if (found == std::end(nmea_sentence_names)) return std::nullopt;
+    return UbxMessageId{class_nmea, nmea_sentence_ids[found - std::begin(nmea_sentence_names)]};
 }
 
 std::uint64_t factory_rate(const BoardProfile& board, std::size_t sentence) {

@@ -15,6 +15,8 @@ struct BoardSentence {
 };
 /// In the order in which they leave.
 std::vector<BoardSentence> board_sentences(const BoardProfile& board);
+/// The id of a sentence, "GGA"; nothing for a name that stands for none.
+std::optional<UbxMessageId> sentence_message(std::string_view name);
 /// Every how many epochs the board sends one from the factory on; 0: never.
 std::uint64_t factory_rate(const BoardProfile& board, std::size_t sentence);
 /// Whether a sentence leaves with an epoch. @param every so many

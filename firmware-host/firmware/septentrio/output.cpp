@@ -8,10 +8,10 @@
 
 #include "base/core/number_text.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/sentences/sentence_maker.hpp"
 #include "firmware/septentrio/console.hpp"
 #include "firmware/septentrio/rover_and_station.hpp"
 #include "firmware/septentrio/sbf_messages.hpp"
-#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/sbf_raw_blocks.hpp"
 
 namespace skyloop::firmware {
@@ -196,8 +196,7 @@ std::vector<Bytes> due_messages(const SeptentrioState& receiver, const ReportCon
     }
     if (lets_through(receiver.settings, port, "NMEA"))
         for (const std::string& word : due_words(receiver, "NMEAOutput", context))
-            if (const OutputMessage* sentence = find_output_message(word); sentence != nullptr)
-                append(make_message(sentence->id, context));
+            if (const auto sentence = sentence_message(word)) append(make_message(*sentence, context));
     append(station_output(receiver.settings, context));
     return messages;
 }

@@ -41,7 +41,7 @@ SbfIndicator indicator(unsigned type, double value) {
 }
 
 // 10 with twelve satellites of 45 dB-Hz on the average.
-double signal_quality(const Fix& fix) {
+double quality_of_signals(const Fix& fix) {
     constexpr double least_cn0 = 25, best_cn0 = 45, best_count = 12;
     double sum = 0;
     int count = 0;
@@ -115,7 +115,7 @@ SbfQualityInd sbf_quality(const NavigationState& state) {
     constexpr unsigned overall = 0, signals = 1, radio = 11, processor = 21, base_station = 30;
     constexpr double head_room = 8, fresh_s = 1, stale_s = 20;
     auto block = sbf_block<SbfQualityInd>(state);
-    const double of_signals = signal_quality(state.epoch.fix);
+    const double of_signals = quality_of_signals(state.epoch.fix);
     const double of_radio = state.monitors.jamming_state() >= 2 ? 10 - 3.5 * state.monitors.jamming_state() : 10;
     block.indicators = {indicator(overall, has_solution(state) ? std::min(of_signals, of_radio) : 0),
                         indicator(signals, of_signals), indicator(radio, of_radio), indicator(processor, head_room)};

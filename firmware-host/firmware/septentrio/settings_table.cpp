@@ -18,7 +18,7 @@ constexpr std::string_view correction_paces =
     "RTCM1001|2 RTCM1003|4 RTCM1005|6 RTCM1007|8 RTCM1009|10 RTCM1011|12 RTCM1013 RTCM1019 RTCM1020 RTCM1029 RTCM1033 "
     "RTCM1042 RTCM1044 RTCM1045 RTCM1046 RTCM1230 MSM1 MSM2 MSM3 MSM4 MSM5 MSM6 MSM7";
 
-constexpr SettingGroup groups[] = {
+constexpr SettingGroup setting_group_table[] = {
     {"scs", "gcs", "COMSettings", serial_ports, "Rate DataBits Parity StopBits FlowControl",
      "baud115200,bits8,No,bit1,none"},
     {"sdio", "gdio", "DataInOut", connections, "Input Output+ Show", "auto,SBF+NMEA,(on)"},
@@ -204,7 +204,7 @@ std::string_view words_of(WordKind kind) {
 
 }  // namespace
 
-std::span<const SettingGroup> setting_groups() { return groups; }
+std::span<const SettingGroup> setting_groups() { return setting_group_table; }
 
 bool same_word(std::string_view a, std::string_view b) { return lower_case(a) == lower_case(b); }
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "firmware/core/factory_settings.hpp"
 #include "firmware/core/state_tracker.hpp"
-#include "firmware/ublox/config/config_handler.hpp"
 #include "sample_epochs.hpp"
 
 namespace skyloop::firmware {
@@ -23,13 +23,13 @@ struct Driven {
     void drive(int epochs) {
         for (int i = 0; i < epochs; ++i) {
             fix.time += 1s;
-            tracker.update({fix}, receiver_config(store, board), {});
+            tracker.update({fix}, config, {});
         }
     }
     [[nodiscard]] const NavigationState& state() const { return tracker.state(); }
 
     BoardProfile board = sample_board(NmeaVersion::v4_10, {Constellation::gps});
-    ConfigStore store{factory_config(board)};
+    ReceiverConfig config = factory_settings(board, {});
     StateTracker tracker{board};
     Fix fix = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
 };

@@ -162,7 +162,10 @@ TEST(Receiver, RefusesStoredSettingsThatItWouldRefuse) {
 
     board.maker = MakerKind::mtk;
     Receiver other(std::move(board));
-    EXPECT_TRUE(other.restore("flash CFG-NAVSPG-DYNMODEL 99\n", "state")) << "ranges are of u-blox";
+    EXPECT_EQ(other.restore("battery CFG-RATE-MEAS 500\n", "state").error().message,
+              "state:1: 'CFG-RATE-MEAS' is no configuration item of this receiver");
+    EXPECT_TRUE(other.restore("battery fix_interval_ms 500\n", "state"));
+    EXPECT_EQ(other.settings().navigation_period, 500ms);
 }
 
 TEST(Receiver, TakesAPeriodThatLeavesOutTheRestOfADivision) {
@@ -196,6 +199,7 @@ TEST(Receiver, OfUBloxSolvesWithAsManySatellitesAsItsConfigurationSays) {
 
 TEST(Receiver, HearsB1cOfBeidou3Alone) {
     BoardProfile board = sample_board(NmeaVersion::v4_11, {Constellation::beidou});
+    board.maker = MakerKind::ublox;
     const SatelliteId beidou_2{Constellation::beidou, 7}, meo{Constellation::beidou, 21},
         geo{Constellation::beidou, 59};
     for (const bool b1c : {false, true}) {

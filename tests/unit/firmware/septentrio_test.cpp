@@ -68,7 +68,7 @@ TEST_F(Console, RepeatsACommandToTheLetterAndTellsWhatIsSet) {
               "$R: getSBFOutput, Stream2\r\n  SBFOutput, Stream2, COM1, DOP+PVTGeodetic, msec200\r\nUSB1>");
     EXPECT_THAT(say("setElevationMask, all, 12"),
                 HasSubstr("  ElevationMask, Tracking, 12\r\n  ElevationMask, PVT, 12\r\n"));
-    EXPECT_EQ(target_.config.elevation_mask.deg(), 12);
+    EXPECT_DOUBLE_EQ(target_.config.elevation_mask.deg(), 12);
 }
 
 TEST_F(Console, AddsToListsAndTakesAway) {
@@ -266,7 +266,7 @@ TEST_F(Console, SaysWhatIsTrackedAndHowItMoves) {
     EXPECT_EQ(target_.config.limits.dynamic_model, 8);
     say("sem,PVT,10");
     say("sem,Tracking,15");
-    EXPECT_EQ(target_.config.elevation_mask.deg(), 15) << "what is not tracked is not used";
+    EXPECT_DOUBLE_EQ(target_.config.elevation_mask.deg(), 15) << "what is not tracked is not used";
     say("snti, GP");
     EXPECT_EQ(target_.config.nmea.talker, "GP");
 }
@@ -280,7 +280,7 @@ TEST_F(Console, StartsAgainAsSaved) {
     EXPECT_EQ(say("erst,soft,none"), "$R: erst,soft,none\r\n  ResetReceiver, soft, none\r\nSTOP>");
     EXPECT_EQ(outcome_.reset->forgotten.kind(), StartKind::hot);
     console_.restart(target_);
-    EXPECT_EQ(target_.config.elevation_mask.deg(), 20);
+    EXPECT_DOUBLE_EQ(target_.config.elevation_mask.deg(), 20);
     EXPECT_THAT(say("gso,Stream1"), HasSubstr("COM1, DOP, sec1"));
     say("erst,soft,PVTData");
     EXPECT_EQ(outcome_.reset->forgotten.kind(), StartKind::warm);

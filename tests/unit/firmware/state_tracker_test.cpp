@@ -353,6 +353,7 @@ TEST(StateTracker, FreezesTheCourseAtRest) {
 
 TEST(StateTracker, CountsTheDistance) {
     Tracked t(tracked_board());
+    t.store().set(in_ram, key::odo_use_odo, 1);
     t.tracker().start(t.fix().time, {}, true);
     EXPECT_NEAR(t.steps(11).odometer_m, 125, 1e-9);
     t.tracker().reset_odometer();
