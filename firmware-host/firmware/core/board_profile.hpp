@@ -21,6 +21,8 @@
 
 namespace skyloop::firmware {
 
+struct FirmwareList;
+
 /// Sentences that a receiver can send periodically, in the order in which they leave within one epoch unless the board
 /// gives another (`BoardProfile::messages`).
 enum class NmeaSentence { rmc, vtg, gga, gns, gsa, gsv, gll, gst, zda, gbs, dtm, grs, vlw, ths };
@@ -215,7 +217,6 @@ struct BoardProfile {
 
     /// What it can send, in the order in which it leaves within an epoch; sentences among it.
     std::vector<UbxMessageId> messages;
-    std::set<UbxMessageId> unsent;                ///< what it has rates for in CFG-MSGOUT and does not send
     std::set<UbxMessageId> polled;                ///< what it answers but does not send by itself
     std::map<UbxMessageId, LegacyAnswer> legacy;  ///< legacy configuration messages that it knows
     std::vector<GnssBlock> gnss_blocks;           ///< of CFG-GNSS
@@ -225,7 +226,8 @@ struct BoardProfile {
     bool comms_output_port = false;                 ///< MON-COMMS tells by which port it leaves
     std::size_t galileo_words = 8;                  ///< of a pair of pages in RXM-SFRBX; a ninth tells nothing
     std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value
-    std::set<std::uint32_t> absent_keys;            ///< items that it does not have
+    const FirmwareList* items_of = nullptr;         ///< whose items it has; null: all that there are
+    std::set<std::uint32_t> absent_keys;            ///< of them, those that it does not have
 };
 
 /// Whether a UART of the board can be set to a speed.

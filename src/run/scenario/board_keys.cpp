@@ -258,7 +258,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     if (board.messages.empty())
         for (const std::string_view name : firmware::nmea_sentence_names)
             board.messages.push_back(firmware::find_output_message(name)->id);
-    if (board.maker == firmware::MakerKind::ublox) leave_out_rates_of_others(board);
+    if (!top.has("config") && board.maker == firmware::MakerKind::ublox) leave_out_rates_of_others(board);
     top.table("config", [&](TableReader& t) { read_board_config(t, board); });
     check_factory_config(top, board);
 }

@@ -148,8 +148,6 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
     board.messages = read_messages(ubx, "messages", sent);
     const auto only_polled = read_messages(ubx, "polled", polled);
     board.polled.insert(only_polled.begin(), only_polled.end());
-    const auto unsent = read_messages(ubx, "unsent", sent);
-    board.unsent.insert(unsent.begin(), unsent.end());
     ubx.table("legacy", [&](TableReader& legacy) { read_legacy(legacy, board); });
     read_gnss_blocks(ubx, board);
     ubx.integer("gnss_channels_hardware", board.gnss_channels_hardware, {0, 255});
@@ -162,17 +160,24 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
 
 void leave_out_rates_of_others(BoardProfile& board) {
     for (const firmware::OutputMessage& message : firmware::output_messages()) {
-        if (firmware::sends(board, message.id) || board.unsent.contains(message.id)) continue;
+        const bool listed = board.items_of != nullptr && firmware::is_of_ublox(message.i2c_key);
+        if (listed || firmware::sends(board, message.id)) continue;
         for (std::uint32_t port = 0; port < firmware::port_count; ++port)
             board.absent_keys.insert(message.i2c_key + port);
     }
 }
 
 void read_board_config(TableReader& config, BoardProfile& board) {
+    std::vector<std::string_view> firmware;
+    for (const firmware::FirmwareList& list : firmware::firmware_lists())
+        firmware.push_back(list.name);
+    if (const auto index = config.choice("items_of", firmware)) board.items_of = &firmware::firmware_lists()[*index];
     read_absent_keys(config, board);
-    for (const auto& [id, value] : read_config_items(config, "absent")) {
+    if (board.maker == firmware::MakerKind::ublox) leave_out_rates_of_others(board);
+    const auto items = firmware::factory_config(board);
+    for (const auto& [id, value] : read_config_items(config, {"items_of", "absent"})) {
         const std::string_view name = firmware::find_config_key(id)->name;
-        if (board.absent_keys.contains(id))
+        if (!items.contains(id))
             config.mistake(name, "is set, and is among the items that the board does not have");
         else if (firmware::is_in_range(board, id, value))
             board.config[id] = value;
@@ -207,10 +212,11 @@ std::vector<std::string_view> config_item_names() {
     return names;
 }
 
-std::map<std::uint32_t, std::uint64_t> read_config_items(TableReader& config, std::string_view other) {
+std::map<std::uint32_t, std::uint64_t> read_config_items(TableReader& config,
+                                                         std::initializer_list<std::string_view> others) {
     std::map<std::uint32_t, std::uint64_t> items;
     for (const std::string& name : config.keys()) {
-        if (name == other) continue;
+        if (std::ranges::find(others, name) != others.end()) continue;
         if (const ConfigKey* key = firmware::find_config_key(name)) {
             items[key->id] = read_value(config, *key);
         } else {

@@ -322,7 +322,7 @@ TEST(Valget, GivesEverythingPageByPage) {
         Configured c;
         std::size_t on_the_wire = 0;
         for (const ConfigKey& key : config_keys())
-            on_the_wire += key.on_the_wire ? 1 : 0;
+            on_the_wire += is_of_ublox(key.id) ? 1U : 0U;
         KeyValues all;
         for (std::size_t size = 64; size == 64;) {
             const auto page = c.get(0, {wildcard}, static_cast<std::uint16_t>(all.size()));

@@ -1,6 +1,7 @@
 /// Boards with what legacy configuration messages need, and a receiver's configuration to send them to.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -48,6 +49,11 @@ inline BoardProfile legacy_board() {
     return board;
 }
 
+/// A list of items by its firmware.
+inline const FirmwareList* items_of(std::string_view firmware) {
+    return &*std::ranges::find(firmware_lists(), firmware, &FirmwareList::name);
+}
+
 /// u-blox M8, SPG 3.01 (RECEIVER.md 2).
 inline BoardProfile legacy_m8() {
     BoardProfile board = legacy_board();
@@ -65,7 +71,8 @@ inline BoardProfile legacy_m8() {
     board.config = {
         {key::navspg_wknrollover, 1867}, {0x10230001, 0}, {0x50360006, 0x851}, {0x40050026, 4}, {0x4005000F, 125000}};
     for (const PortId port : board.ports) {
-        board.absent_keys.insert(key::in_protocol(port, 4));
+        for (const std::uint32_t protocol : {4U, 5U})  // RTCM 3, SPARTN
+            board.absent_keys.insert(key::in_protocol(port, protocol));
         board.absent_keys.insert(key::out_protocol(port, 4));
     }
     return board;
@@ -84,16 +91,14 @@ inline BoardProfile legacy_m9() {
     board.gnss_channels_hardware = board.gnss_channels_used = 42;
     board.gnss_blocks = {{0, 8, 16, 0x01010001}, {1, 3, 3, 0x01010001}, {2, 8, 12, 0x01010001},
                          {3, 2, 5, 0x01010001},  {5, 3, 4, 0x01050001}, {6, 8, 12, 0x01010001}};
-    board.config = {{0x10310014, 1}};
-    for (const PortId port : board.ports)
-        board.absent_keys.insert(key::out_protocol(port, 4));
+    board.items_of = items_of("SPG 4.04");
     return board;
 }
 
 /// ZED-F9P, HPG 1.32.
 inline BoardProfile legacy_f9p() {
     BoardProfile board = legacy_m9();
-    board.identity.software = "EXT CORE 1.00 (f10c36)";
+    board.identity.software = "EXT CORE 1.00 (0fa0ae)";
     board.identity.extensions = {"FWVER=HPG 1.32", "PROTVER=27.31", "MOD=ZED-F9P"};
     board.dual_frequency = true;
     board.legacy[cfg(0x70)] = board.legacy[cfg(0x71)] = LegacyAnswer::apply;
@@ -102,7 +107,7 @@ inline BoardProfile legacy_f9p() {
     board.gnss_blocks = {{0, 8, 16, 0x01110001}, {1, 3, 3, 0x01010001}, {2, 10, 18, 0x01210001},
                          {3, 2, 5, 0x01110001},  {5, 0, 4, 0x01110001}, {6, 8, 12, 0x01110001}};
     board.config = {{key::navspg_wknrollover, 0x832}};
-    board.absent_keys = {0x10230001, 0x30230002};
+    board.items_of = items_of("HPG 1.32");
     return board;
 }
 

@@ -61,7 +61,7 @@ TEST(BoardLegacyAnswers, OfM9AndF9p) {
     EXPECT_EQ(factory_answer("ublox-f9p", 0x3E),
               (Bytes{0,  0, 60, 6, 0, 8, 16, 0, 1,  0, 17, 1, 1, 3, 3, 0, 1,  0, 1, 1, 2,  10, 18, 0, 1,  0,
                      33, 1, 3,  2, 5, 0, 1,  0, 17, 1, 5,  0, 4, 0, 1, 0, 17, 1, 6, 8, 12, 0,  1,  0, 17, 1}));
-    Bytes expert{2, 0, 0x4C, 0x66, 0xC0, 0, 0, 0, 0, 0, 3, 0x20, 6, 0, 0, 0, 0, 0, 0x32, 8};
+    Bytes expert{2, 0, 0x4C, 0x66, 0xC0, 0, 0, 0, 0, 0, 3, 0x20, 6, 0, 0, 0, 0, 0, 0xA0, 8};
     expert.resize(40);
     EXPECT_EQ(factory_answer("ublox-f9p", 0x23), expert);
 }

@@ -95,6 +95,9 @@ inline constexpr std::array<NumberedNmeaVersion, 5> numbered_nmea_versions{{{Nme
 /// By CFG-NMEA-MAINTALKERID. 0: by the systems; 6 stands for GI, which no receiver here has.
 inline constexpr std::array<std::string_view, 8> numbered_talkers{"", "GP", "GL", "GN", "GA", "GB", "", "GQ"};
 
+/// Whether VALGET and VALSET know an item, on a board that stores it.
+bool is_on_the_wire(const BoardProfile& board, std::uint32_t key);
+
 /// The factory configuration of a board: every item that it has.
 ConfigValues factory_config(const BoardProfile& board);
 /// The same with what a run's options change of it.

@@ -1,10 +1,11 @@
-/// Every configuration item that an emulated receiver can have (u-blox F9 interface description HPG 1.32, section 6;
+/// Every configuration item that an emulated receiver can have, and the firmware that has it (`firmware_lists`;
 /// RECEIVER.md 3.5).
 ///
 /// The parts of the list of configuration items; `config_keys` puts them together.
 /// Names of messages, as board files write them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -19,15 +20,32 @@ namespace skyloop::firmware {
 /// How a value is to be read: logical, unsigned, signed, bit field, enumeration, floating point; with its bytes.
 enum class ConfigType : std::uint8_t { l, u1, i1, x1, e1, u2, i2, x2, u4, i4, x4, r4, u8, i8, x8, r8 };
 
+/// Firmware, a bit each, whose list of items has an item.
+using FirmwareLists = std::uint16_t;
+namespace listed {
+inline constexpr FirmwareLists m9 = 1, m10_510 = 2, m10_530 = 4, f10 = 8, f9p_113 = 16, f9p_132 = 32, f9p_150 = 64,
+                               f9p_15b = 128, x20p = 256;
+inline constexpr FirmwareLists m10 = m10_510 | m10_530, f9p = f9p_113 | f9p_132 | f9p_150, f9 = f9p | f9p_15b,
+                               f9_new = f9 & ~f9p_113, all = m9 | m10 | f10 | f9 | x20p, none = 0;
+/// Receivers that do not list it store it all the same, for their legacy messages; VALGET and VALSET do not know it.
+inline constexpr FirmwareLists kept = 1 << 15;
+}  // namespace listed
+
+/// A list of items, as a board names it.
+struct FirmwareList {
+    FirmwareLists bit = 0;
+    std::string_view name;    ///< of the firmware: "HPG 1.32"
+    std::string_view source;  ///< u-blox's number of the interface description
+};
+std::span<const FirmwareList> firmware_lists();
+
 /// One item.
 struct ConfigKey {
     std::uint32_t id = 0;
     std::string_view name;  ///< "CFG-RATE-MEAS"
     ConfigType type = ConfigType::u1;
     std::uint64_t default_value = 0;  ///< of the NEO-M9N; a board says where its own differs
-    /// False for items that old receivers reach by CFG-MSG and their like alone: the receiver stores them, VALGET and
-    /// VALSET do not know them.
-    bool on_the_wire = true;
+    FirmwareLists lists = listed::none;
 };
 
 /// All of them, ascending by group and item, the size bits left aside.
@@ -128,12 +146,21 @@ std::span<const ConfigKey> private_keys();
 struct RateKeys {
     OutputMessage message;
     std::string_view stem;
+    FirmwareLists lists;
 };
+/// As these names end, in the order of PortId.
+inline constexpr std::array<std::string_view, port_count> rate_key_endings{"_I2C", "_UART1", "_UART2", "_USB", "_SPI"};
 /// Ascending by message. A key of the group `private_message_group` is one of our own.
 std::span<const RateKeys> rate_keys();
 
 /// Groups that no interface description uses: rates of messages without a key, and what legacy messages store.
 inline constexpr std::uint32_t private_message_group = 0xFE, private_item_group = 0xFD;
+/// Whether an item is one of u-blox's. Receivers store the others for their legacy messages; VALGET and VALSET do not
+/// know them.
+constexpr bool is_of_ublox(std::uint32_t key) {
+    const std::uint32_t group = key >> 16 & 0xFF;
+    return group != private_message_group && group != private_item_group;
+}
 
 /// A message that is answered, or that configures, but is never sent periodically.
 struct NamedMessage {

@@ -12,7 +12,7 @@
 namespace skyloop::firmware {
 namespace {
 
-// The port that an item belongs to: by its group, by the order of CFG-INFMSG, by the order of CFG-MSGOUT.
+// The port that an item belongs to: by its group, by the order of CFG-INFMSG, by the end of its name in CFG-MSGOUT.
 std::optional<PortId> port_of(const ConfigKey& key) {
     constexpr struct {
         PortId port;
@@ -25,17 +25,14 @@ std::optional<PortId> port_of(const ConfigKey& key) {
     constexpr std::uint32_t infmsg = 0x92;
     const std::uint32_t group = key.id >> 16 & 0xFF;
     if (group == infmsg) return static_cast<PortId>(((key.id & 0xFFFF) - 1) % port_count);
+    if (key.name.starts_with("CFG-MSGOUT-")) {
+        const auto ends = [&key](std::string_view ending) { return key.name.ends_with(ending); };
+        const auto ending = std::ranges::find_if(rate_key_endings, ends);
+        return static_cast<PortId>(ending - rate_key_endings.begin());
+    }
     for (const auto& [port, itself, in, out] : groups)
         if (group == itself || group == in || group == out) return port;
     return std::nullopt;
-}
-
-// Items of CFG-MSGOUT of ports that the board does not have.
-void erase_rates_of_missing_ports(const BoardProfile& board, ConfigValues& values) {
-    for (const OutputMessage& message : output_messages())
-        for (std::uint32_t port = 0; port < port_count; ++port)
-            if (std::ranges::find(board.ports, static_cast<PortId>(port)) == board.ports.end())
-                values.erase(message.i2c_key + port);
 }
 
 ConfigValues items_of_board(const BoardProfile& board) {
@@ -43,9 +40,9 @@ ConfigValues items_of_board(const BoardProfile& board) {
     for (const ConfigKey& key : config_keys()) {
         const auto port = port_of(key);
         const bool missing = port && std::ranges::find(board.ports, *port) == board.ports.end();
-        if (!missing && !board.absent_keys.contains(key.id)) values.emplace(key.id, key.default_value);
+        const bool stored = is_on_the_wire(board, key.id) || !is_of_ublox(key.id) || (key.lists & listed::kept) != 0;
+        if (!missing && stored && !board.absent_keys.contains(key.id)) values.emplace(key.id, key.default_value);
     }
-    erase_rates_of_missing_ports(board, values);
     return values;
 }
 
@@ -259,6 +256,12 @@ bool has_half_of_its_bands(const BoardProfile& board, const ConfigValues& values
 }
 
 }  // namespace
+
+bool is_on_the_wire(const BoardProfile& board, std::uint32_t key) {
+    const ConfigKey* found = find_config_key(key);
+    if (found == nullptr || !is_of_ublox(key)) return false;
+    return board.items_of == nullptr || (found->lists & board.items_of->bit) != 0;
+}
 
 ConfigValues factory_config(const BoardProfile& board) {
     ConfigValues values = items_of_board(board);

@@ -31,10 +31,10 @@ constexpr std::uint32_t tx_ready(PortId port) { return 0x30FD'0001u + static_cas
 /// Bit 4 of the mode, which means nothing, but which receivers give back.
 constexpr std::uint32_t mode_bit_4(PortId port) { return 0x10FD'0010u + static_cast<std::uint32_t>(port); }
 constexpr std::uint32_t rtcm2_in(PortId port) { return 0x10FD'0020u + static_cast<std::uint32_t>(port); }
-inline constexpr std::uint32_t usb_vendor_id = 0x30FD0030, usb_product_id = 0x30FD0031, usb_power = 0x30FD0032;
+inline constexpr std::uint32_t usb_vendor_id = 0x3065000A, usb_product_id = 0x3065000B, usb_power = 0x3065000C;
 /// Four items of eight characters each.
-inline constexpr std::uint32_t usb_vendor_string = 0x50FD0034, usb_product_string = 0x50FD0038,
-                               usb_serial_number = 0x50FD003C;
+inline constexpr std::uint32_t usb_vendor_string = 0x5065000D, usb_product_string = 0x50650011,
+                               usb_serial_number = 0x50650015;
 
 // Navigation; section 3, navConf.
 inline constexpr std::uint32_t inifix3d = 0x10110013, ack_aiding = 0x10110025, use_ppp = 0x10110019,

@@ -15,22 +15,21 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr unsigned io_port = 0, msg_conf = 1, inf_msg = 2, nav_conf = 3, rxm_conf = 4, sen_conf = 8, rinv_conf = 9,
-                   ant_conf = 10, log_conf = 11;
+constexpr unsigned io_port = 0, msg_conf = 1, inf_msg = 2, nav_conf = 3, rxm_conf = 4, rinv_conf = 9, ant_conf = 10,
+                   log_conf = 11;
 
 /// The bit of CFG-CFG's masks that an item belongs to (M8 interface description 32.11.3.1); what no bit names belongs
 /// to the navigation.
 unsigned section_of(std::uint32_t key) {
-    // CFG-I2C, -UART1, -UART2, -SPI, -USB, -TXREADY; CFG-TP, -SIGNAL, -SIGNAL health, -ITFM, -PM, -SEC; CFG-SFIMU,
-    // -SFODO.
+    // CFG-I2C, -UART1, -UART2, -SPI, -USB, -TXREADY; CFG-TP, -SIGNAL, -SIGNAL health, -ITFM, -PM, -SEC.
     constexpr struct {
         std::uint32_t group;
         unsigned section;
-    } rows[] = {{0x51, io_port},  {0x52, io_port},   {0x53, io_port},  {0x64, io_port},
-                {0x65, io_port},  {0xA2, io_port},   {0x91, msg_conf}, {legacy_key::own_rate_group, msg_conf},
-                {0x92, inf_msg},  {0x05, rxm_conf},  {0x31, rxm_conf}, {0x32, rxm_conf},
-                {0x41, rxm_conf}, {0xD0, rxm_conf},  {0xF6, rxm_conf}, {0x06, sen_conf},
-                {0x07, sen_conf}, {0xC7, rinv_conf}, {0xA3, ant_conf}, {0xDE, log_conf}};
+    } rows[] = {{0x51, io_port},  {0x52, io_port},  {0x53, io_port},  {0x64, io_port},
+                {0x65, io_port},  {0xA2, io_port},  {0x91, msg_conf}, {legacy_key::own_rate_group, msg_conf},
+                {0x92, inf_msg},  {0x05, rxm_conf}, {0x31, rxm_conf}, {0x32, rxm_conf},
+                {0x41, rxm_conf}, {0xD0, rxm_conf}, {0xF6, rxm_conf}, {0xC7, rinv_conf},
+                {0xA3, ant_conf}, {0xDE, log_conf}};
     const std::uint32_t group = key >> 16 & 0xFF;
     if (group == legacy_key::own_group) return key >> 8 & 0xF;
     if (group >= 0x71 && group <= 0x7A) return io_port;

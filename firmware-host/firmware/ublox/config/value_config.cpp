@@ -25,11 +25,6 @@ bool means_everything(std::uint32_t key) {
     return (key & 0x8FFF'0000u) == 0x0FFF'0000u && (item == whole_group || item == 0);
 }
 
-bool is_on_the_wire(std::uint32_t key) {
-    const ConfigKey* found = find_config_key(key);
-    return found != nullptr && found->on_the_wire;
-}
-
 ConfigOutcome verdict(Verdict said) { return {.answers = {}, .verdict = said, .work = Seconds(0)}; }
 ConfigOutcome refused() { return verdict(Verdict::refuse); }
 
@@ -68,16 +63,16 @@ std::vector<std::uint32_t> ValueConfig::expanded(std::uint32_t key) const {
     std::vector<std::uint32_t> items;
     const bool everything = means_everything(key);
     if (!everything && (key & 0x8F00'FFFFu) != whole_group) {
-        if (is_on_the_wire(key) && store_.has(key)) items.push_back(key);
+        if (is_on_the_wire(board_, key) && store_.has(key)) items.push_back(key);
         return items;
     }
     for (const auto& [item, value] : store_.values(ConfigLayer::factory))
-        if ((everything || group_of(item) == group_of(key)) && is_on_the_wire(item)) items.push_back(item);
+        if ((everything || group_of(item) == group_of(key)) && is_on_the_wire(board_, item)) items.push_back(item);
     return items;
 }
 
 bool ValueConfig::is_settable(std::uint32_t key, std::uint64_t value) const {
-    return is_on_the_wire(key) && store_.has(key) && is_in_range(board_, key, value);
+    return is_on_the_wire(board_, key) && store_.has(key) && is_in_range(board_, key, value);
 }
 
 // A lock leaves up to two groups open (F9 interface description, CFG-SEC-CFG_LOCK).

@@ -49,9 +49,10 @@ std::vector<std::string_view> config_item_names();
 
 /// Reads each key of the table as the value of the item that it names: a whole number within the item's bytes, a number
 /// for R8, true and false or 0 and 1 for L. A name that no item has is a mistake.
-/// @param other a key that is no item, and not read
+/// @param others keys that are no items, and not read
 /// @return raw values by the items' ids
-std::map<std::uint32_t, std::uint64_t> read_config_items(TableReader& config, std::string_view other = {});
+std::map<std::uint32_t, std::uint64_t> read_config_items(TableReader& config,
+                                                         std::initializer_list<std::string_view> others = {});
 
 /// What trajectories of one file share.
 struct TrajectoryContext {
@@ -99,7 +100,8 @@ void read_board_keys(TableReader& top, firmware::BoardProfile& board);
 void read_board_nmea(TableReader& nmea, firmware::BoardProfile& board);
 /// [ubx]
 void read_board_ubx(TableReader& ubx, firmware::BoardProfile& board);
-/// Makes the items of CFG-MSGOUT absent whose message the board does not send: the rate of nothing.
+/// Makes the items of CFG-MSGOUT absent whose message the board does not send: the rate of nothing. Those of a list
+/// that the board names are as the list has them.
 void leave_out_rates_of_others(firmware::BoardProfile& board);
 /// [config]; reads it after everything that decides what a value may be.
 void read_board_config(TableReader& config, firmware::BoardProfile& board);
