@@ -83,6 +83,7 @@ void read_board_quirks(TableReader& table, firmware::Quirks& quirks) {
                 {"silence", ValueConfigSupport::silence}},
                quirks.value_config);
     table.boolean("single_key_valget", quirks.single_key_valget);
+    table.boolean("empty_valget_page", quirks.empty_valget_page);
     table.boolean("hardware_reset_clears_battery", quirks.hardware_reset_clears_battery);
     table.word("speed_change_answer",
                {{"at_new_speed", SpeedChangeAnswer::at_new_speed},

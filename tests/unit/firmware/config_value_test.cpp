@@ -313,8 +313,27 @@ TEST(Valget, AWildcardMeansItsGroupInAscendingOrder) {
                     ElementsAre(Pair(period_item, 1000), Pair(cycles_item, 1), Pair(reference_item, 1)));
     EXPECT_THAT(*c.get(0, {pvt_item, rate_group}),
                 ElementsAre(Pair(pvt_item, 0), Pair(period_item, 1000), Pair(cycles_item, 1), Pair(reference_item, 1)));
+}
+
+// satpulse's configurator asks for both groups at once; a ZED-F9P with HPG 1.51 has nothing in the second.
+TEST(Valget, AGroupWithoutItemsIsNotUnknown) {
+    Configured c;
+    constexpr std::uint32_t empty_group = 0x1099FFFF;
+    EXPECT_EQ(c.get(0, {rate_group, empty_group})->size(), 3U);
+    EXPECT_EQ(c.get(0, {empty_group, rate_group})->size(), 3U);
+    EXPECT_FALSE(c.get(0, {rate_group, unknown_item}));
+    EXPECT_FALSE(c.get(0, {empty_group}));
+}
+
+// A ZED-F9P refuses a page past the end, an X20P answers an empty one.
+TEST(Valget, APagePastTheEndIsRefusedOrEmpty) {
+    Configured c;
     EXPECT_THAT(*c.get(0, {rate_group}, 2), ElementsAre(Pair(reference_item, 1)));
+    EXPECT_FALSE(c.get(0, {rate_group}, 3));
+    c.board.quirks.empty_valget_page = true;
     EXPECT_THAT(*c.get(0, {rate_group}, 3), IsEmpty());
+    EXPECT_THAT(*c.get(0, {rate_group}, 64), IsEmpty());
+    EXPECT_FALSE(c.get(2, {rate_group})) << "a layer without these items";
 }
 
 TEST(Valget, GivesEverythingPageByPage) {

@@ -25,6 +25,8 @@ bool means_everything(std::uint32_t key) {
     return (key & 0x8FFF'0000u) == 0x0FFF'0000u && (item == whole_group || item == 0);
 }
 
+bool means_a_group(std::uint32_t key) { return (key & 0x8F00'FFFFu) == whole_group; }
+
 ConfigOutcome verdict(Verdict said) { return {.answers = {}, .verdict = said, .work = Seconds(0)}; }
 ConfigOutcome refused() { return verdict(Verdict::refuse); }
 
@@ -62,7 +64,7 @@ bool is_known_form(std::uint8_t version, std::uint8_t transaction) {
 std::vector<std::uint32_t> ValueConfig::expanded(std::uint32_t key) const {
     std::vector<std::uint32_t> items;
     const bool everything = means_everything(key);
-    if (!everything && (key & 0x8F00'FFFFu) != whole_group) {
+    if (!everything && !means_a_group(key)) {
         if (is_on_the_wire(board_, key) && store_.has(key)) items.push_back(key);
         return items;
     }
@@ -183,11 +185,13 @@ ConfigOutcome ValueConfig::valget(ByteSpan payload) {
     std::vector<ConfigPair> found;
     for (const std::uint32_t key : message->keys) {
         const auto items = expanded(key);
-        if (items.empty()) return refused();
+        // A group without items is not unknown: a ZED-F9P answers 0x1031FFFF and 0x1032FFFF with what group 31 has.
+        if (items.empty() && !means_a_group(key)) return refused();
         for (const std::uint32_t item : items)
             if (const auto value = store_.stored(*layer, item)) found.push_back({item, *value});
     }
-    if (found.empty()) return refused();
+    const bool past_end = message->position >= found.size();
+    if (found.empty() || (past_end && !board_.quirks.empty_valget_page)) return refused();
     const std::size_t skipped = std::min<std::size_t>(message->position, found.size());
     const std::size_t count = std::min(found.size() - skipped, most_items_of_an_answer);
     CfgValget answer{.version = 1, .layer = message->layer, .position = message->position, .pairs = {}};
