@@ -42,7 +42,7 @@ VERSIONS = {
     "ublox-m8": ("ROM CORE 3.01 (107888)", "00080000", ["FWVER=SPG 3.01", "PROTVER=18.00"]),
     "ublox-m9": ("EXT CORE 4.04 (7f89f7)", "00190000", ["FWVER=SPG 4.04", "PROTVER=32.01", "MOD=NEO-M9N"]),
     "ublox-m10": ("ROM SPG 5.10 (7b202e)", "000A0000", ["FWVER=SPG 5.10", "PROTVER=34.10"]),
-    "ublox-f9p": ("EXT CORE 1.00 (f10c36)", "00190000", ["FWVER=HPG 1.32", "PROTVER=27.31", "MOD=ZED-F9P"]),
+    "ublox-f9p": ("EXT CORE 1.00 (0fa0ae)", "00190000", ["FWVER=HPG 1.32", "PROTVER=27.31", "MOD=ZED-F9P"]),
 }
 
 

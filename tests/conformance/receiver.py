@@ -30,11 +30,11 @@ class Board:
     @property
     def has_flash(self):
         """M10 is the bare chip, with its firmware in ROM."""
-        return self.name != "ublox-m10"
+        return self.generation != 10 or self.name == "ublox-f10"
 
     @property
     def is_f9p(self):
-        return self.name == "ublox-f9p"
+        return self.name.startswith("ublox-f9p")
 
 
 BOARDS = {board.name: board for board in (
@@ -43,6 +43,13 @@ BOARDS = {board.name: board for board in (
     Board("ublox-m10", 38400, 10, (34, 10)),
     Board("ublox-f10", 38400, 10, (40, 0)),
     Board("ublox-f9p", 38400, 9, (27, 31)),
+    Board("ublox-m8p", 9600, 8, (20, 30)),
+    Board("ublox-m9-spg450", 38400, 9, (32, 50)),
+    Board("ublox-max-m10s", 9600, 10, (34, 10)),
+    Board("ublox-m10-spg530", 38400, 10, (34, 30)),
+    Board("ublox-f9p-hpg113", 38400, 9, (27, 12)),
+    Board("ublox-f9p-hpg150", 38400, 9, (27, 50)),
+    Board("ublox-f9p-15b", 38400, 9, (27, 40)),
     Board("nmea-generic", 9600),
     Board("mtk3339", 9600),
     Board("airoha-ag33xx", 115200),

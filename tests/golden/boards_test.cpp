@@ -215,6 +215,8 @@ std::vector<std::string> board_names() {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(SKYLOOP_SOURCE_DIR "/boards/receivers"))
         if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
+    // Those that extend another have its bytes, but for what their files say.
+    std::erase_if(names, [](const std::string& name) { return board_named(name).files.size() > 1; });
     std::ranges::sort(names);
     return names;
 }

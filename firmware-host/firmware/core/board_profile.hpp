@@ -169,7 +169,10 @@ inline constexpr std::uint32_t slowest_baud = 1200, fastest_baud = 8'000'000;
 struct BoardProfile {
     std::string name;
     std::string description;
-    MakerKind maker = MakerKind::mute;
+    std::vector<std::string> aliases;  ///< names of modules that mean this board, too
+    std::vector<std::string> sources;  ///< of what its file says, for people
+    std::vector<std::string> files;    ///< its own, and those of the boards that it extends, the nearest first
+    MakerKind personality = MakerKind::mute;
     Identity identity;
     Timing timing;
     Quirks quirks;

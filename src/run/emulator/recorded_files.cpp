@@ -119,7 +119,9 @@ void add_receiver_files(const Scenario& scenario, const DataFolders& data, std::
         if (receiver.trajectory) add_track_file(*receiver.trajectory, files);
         if (!receiver.state_file.empty()) files.push_back({receiver.state_file});
         if (!boards.insert(receiver.board).second) continue;
-        if (const auto board = find_board_file(receiver.board, board_folders(data))) files.push_back({*board});
+        if (const auto board = find_board(receiver.board, board_folders(data)))
+            for (const std::string& file : board->files)
+                files.push_back({file});
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/core/files.hpp"
 #include "base/core/words.hpp"
+#include "detail/board_parents.hpp"
 #include "detail/scenario_keys.hpp"
 #include "detail/table_reader.hpp"
 
@@ -26,11 +27,12 @@ fs::path board_path(const fs::path& directory, std::string_view name) {
 constexpr std::size_t least_of_module = 3;  // letters, of a name that means one
 
 // What names a board: its own name, and modules by which its receiver reports itself. In small letters.
-std::vector<std::string> words_of_board(const std::string& name, const fs::path& path) {
+std::vector<std::string> words_of_board(const std::string& name, std::span<const fs::path> directories) {
     std::vector<std::string> words{name};
-    const auto text = read_text_file(path);
-    const auto board = text ? read_board(*text, path.string()) : fail(text.error());
+    const auto board = find_board(name, directories);
     if (!board) return words;
+    for (const std::string& alias : board->aliases)
+        words.push_back(lower_case(alias));
     constexpr std::string_view module = "MOD=";
     words.push_back(lower_case(board->identity.hardware));
     for (const std::string& line : board->identity.extensions)
@@ -72,10 +74,14 @@ std::string meant_board(std::string_view name, const std::vector<std::string>& b
     std::vector<std::pair<std::string, std::string>> named;  // a word, and its board
     std::set<std::string> begin_so;
     for (const std::string& board : boards)
-        for (std::string& other : words_of_board(board, *find_board_file(board, directories))) {
+        for (std::string& other : words_of_board(board, directories)) {
             if (word.size() >= least_of_module && other.starts_with(word)) begin_so.insert(board);
             named.emplace_back(std::move(other), board);
         }
+    // Of boards that share a module, the one that the others extend.
+    if (begin_so.size() > 1)
+        std::erase_if(begin_so,
+                      [&](const std::string& board) { return find_board(board, directories)->files.size() > 1; });
     if (!begin_so.empty()) return begin_so.size() == 1 ? *begin_so.begin() : std::string();
     for (const std::string& board : boards)
         if (contains_generation(word, generation_of(board))) return board;
@@ -86,12 +92,34 @@ std::string meant_board(std::string_view name, const std::vector<std::string>& b
     return nearest == words.end() ? "" : named[static_cast<std::size_t>(nearest - words.begin())].second;
 }
 
+// Whether a board's file says that a name means it; one that cannot be read says nothing.
+bool has_alias(const fs::path& file, std::string_view name) {
+    const auto text = read_text_file(file);
+    if (!text) return false;
+    bool found = false;
+    const auto look = [&](toml::table& board, MistakeList&) {
+        const auto* aliases = board["aliases"].as_array();
+        for (std::size_t i = 0; aliases != nullptr && i < aliases->size(); ++i)
+            found = found || lower_case((*aliases)[i].value_or(std::string())) == lower_case(name);
+    };
+    static_cast<void>(read_toml(
+        *text, file.string(), [](TableReader&) {}, look));
+    return found;
+}
+
 }  // namespace
 
-Result<firmware::BoardProfile> read_board(std::string_view toml_text, std::string_view name) {
+Result<firmware::BoardProfile> read_board(std::string_view toml_text, std::string_view name,
+                                          std::span<const fs::path> directories) {
     firmware::BoardProfile board;
     board.name = fs::path(name).stem().string();
-    const auto read = read_toml(toml_text, std::string(name), [&](TableReader& top) { read_board_keys(top, board); });
+    board.files = {std::string(name)};
+    const auto lay_parents = [&](toml::table& top, MistakeList& mistakes) {
+        for (const fs::path& parent : lay_parents_under(top, fs::path(name), directories, mistakes))
+            board.files.push_back(parent.string());
+    };
+    const auto read = read_toml(
+        toml_text, std::string(name), [&](TableReader& top) { read_board_keys(top, board); }, lay_parents);
     if (!read) return fail(read.error());
     return board;
 }
@@ -104,6 +132,10 @@ std::optional<fs::path> find_board_file(std::string_view name, std::span<const f
     std::error_code absent;
     for (const fs::path& directory : directories)
         if (fs::exists(board_path(directory, name), absent)) return board_path(directory, name);
+    for (const std::string& board : list_boards(directories)) {
+        const fs::path file = *find_board_file(board, directories);
+        if (has_alias(file, name)) return file;
+    }
     return std::nullopt;
 }
 
@@ -111,7 +143,7 @@ Result<firmware::BoardProfile> find_board(std::string_view name, std::span<const
     if (const auto path = find_board_file(name, directories)) {
         const auto text = read_text_file(*path);
         if (!text) return fail(text.error());
-        return read_board(*text, path->string());
+        return read_board(*text, path->string(), directories);
     }
     const std::vector<std::string> known = list_boards(directories);
     if (known.empty()) {

@@ -19,14 +19,17 @@ namespace skyloop::inline run {
 
 /// Reads the TOML text of one receiver profile.
 /// @param name what messages call the file, "boards/receivers/ublox-m8.toml"; its stem is the profile's name
+/// @param directories as of find_board_file(), for the board that this one extends; its own folder comes before them
 /// Fails with `input`: the sentence names file, line, column and key, what was found and what was expected.
-Result<firmware::BoardProfile> read_board(std::string_view toml_text, std::string_view name);
+Result<firmware::BoardProfile> read_board(std::string_view toml_text, std::string_view name,
+                                          std::span<const std::filesystem::path> directories = {});
 
 /// Whether a name is the path of a board's file: it ends in ".toml".
 bool is_board_path(std::string_view name);
 
 /// Where the profile of this name lies: `receivers/<name>.toml` in the first of `directories` that has one; of a
-/// path (is_board_path()) that file. Nothing for an unknown name.
+/// path (is_board_path()) that file; of an alias, in letters of any case, the file that names it. Nothing for an
+/// unknown name.
 std::optional<std::filesystem::path> find_board_file(std::string_view name,
                                                      std::span<const std::filesystem::path> directories);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "firmware/septentrio/settings.hpp"
 #include "firmware/ublox/config/config_handler.hpp"
@@ -18,6 +19,20 @@ using firmware::SpeedChangeAnswer;
 using firmware::ValueConfigSupport;
 
 constexpr NumberRange speed_range{firmware::slowest_baud, firmware::fastest_baud};
+
+// Texts of the start may name what MON-VER says.
+std::vector<std::string> filled_in(const std::vector<std::string>& texts, const firmware::Identity& identity) {
+    std::vector<std::string> filled;
+    for (const std::string& text : texts) {
+        if (text == "{extensions}")
+            filled.insert(filled.end(), identity.extensions.begin(), identity.extensions.end());
+        else if (text == "{software}")
+            filled.push_back(identity.software);
+        else
+            filled.push_back(text);
+    }
+    return filled;
+}
 
 void read_board_identity(TableReader& table, firmware::Identity& identity) {
     table.integer("generation", identity.generation, {5, 20});
@@ -40,6 +55,16 @@ void read_board_identity(TableReader& table, firmware::Identity& identity) {
         table.mistake("unique_id", fmt::format("is '{}'; expected five or six bytes in hexadecimal digits", digits));
     else
         identity.unique_id = *bytes;
+    identity.banner = filled_in(identity.banner, identity);
+}
+
+// A word that stands in a list and is no path.
+void read_aliases(TableReader& top, std::vector<std::string>& aliases) {
+    top.texts("aliases", aliases);
+    const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
+    for (const std::string& alias : aliases)
+        if (alias.empty() || !std::ranges::all_of(alias, is_plain))
+            top.mistake("aliases", fmt::format("holds '{}'; expected letters, digits, '-' and '_'", alias));
 }
 
 void read_board_timing(TableReader& table, firmware::Timing& timing) {
@@ -234,7 +259,11 @@ std::optional<Bytes> bytes_of_hex(std::string_view text) {
 
 void read_board_keys(TableReader& top, BoardProfile& board) {
     board.constellations = {Constellation::gps};
+    std::string parent;
+    top.text("extends", parent);  // that one has been laid under this
     top.text("description", board.description);
+    read_aliases(top, board.aliases);
+    top.texts("sources", board.sources);
     top.word("personality",
              {{"mute", MakerKind::mute},
               {"ublox", MakerKind::ublox},

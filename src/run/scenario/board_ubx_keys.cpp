@@ -158,6 +158,18 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
     ubx.integer("galileo_words", board.galileo_words, {8, 9});
 }
 
+namespace {
+
+// A message that the firmware has no rate for is not one of its.
+void leave_out_messages_of_others(BoardProfile& board) {
+    std::erase_if(board.messages, [&board](UbxMessageId message) {
+        const std::uint32_t rate = firmware::find_output_message(message)->i2c_key;
+        return firmware::is_of_ublox(rate) && !firmware::is_on_the_wire(board, rate);
+    });
+}
+
+}  // namespace
+
 void leave_out_rates_of_others(BoardProfile& board) {
     for (const firmware::OutputMessage& message : firmware::output_messages()) {
         const bool listed = board.items_of != nullptr && firmware::is_of_ublox(message.i2c_key);
@@ -172,6 +184,7 @@ void read_board_config(TableReader& config, BoardProfile& board) {
     for (const firmware::FirmwareList& list : firmware::firmware_lists())
         firmware.push_back(list.name);
     if (const auto index = config.choice("items_of", firmware)) board.items_of = &firmware::firmware_lists()[*index];
+    leave_out_messages_of_others(board);
     read_absent_keys(config, board);
     if (board.maker == firmware::MakerKind::ublox) leave_out_rates_of_others(board);
     const auto items = firmware::factory_config(board);
@@ -188,7 +201,7 @@ void read_board_config(TableReader& config, BoardProfile& board) {
 
 void read_signal_conflicts(TableReader& navigation, BoardProfile& board) {
     std::vector<std::string> sets;
-    navigation.texts("signal_conflicts", sets);
+    navigation.texts("signal_conflicts", sets, {}, 0);
     for (const std::string& names : sets) {
         std::set<std::uint32_t> conflict;
         for (std::size_t begin = 0, end = 0; begin < names.size(); begin = end + 1) {

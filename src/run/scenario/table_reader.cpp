@@ -372,9 +372,7 @@ Result<void> read_toml(std::string_view text, const std::string& file, const std
         if (!mistakes.empty()) return fail(mistakes.error());
         return {};
     } catch (const toml::parse_error& error) {
-        const auto where = error.source().begin;
-        return fail(ErrorCode::input,
-                    fmt::format("{}:{}:{}: {}", file, where.line, where.column, on_one_line(error.description())));
+        return fail(ErrorCode::input, MistakeList(file).told(error.source(), on_one_line(error.description())));
     }
 }
 

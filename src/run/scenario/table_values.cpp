@@ -48,7 +48,9 @@ std::string MistakeList::told(const toml::source_region& where, std::string_view
     const toml::source_position place = where.begin.line > 0 ? where.begin
                                         : change != nullptr  ? change->place
                                                              : toml::source_position{1, 1};
-    return fmt::format("{}:{}:{}: {}", file_, place.line, place.column, text);
+    // Of a file that was laid under this one.
+    const std::string& file = where.begin.line > 0 && where.path && !where.path->empty() ? *where.path : file_;
+    return fmt::format("{}:{}:{}: {}", file, place.line, place.column, text);
 }
 
 void MistakeList::add(const toml::source_region& where, const std::string& sentence, ErrorCode code) {

@@ -101,8 +101,13 @@ std::map<std::string, std::set<std::uint32_t>> table_of_items(std::ifstream& fil
 }
 
 TEST(BoardItems, EveryBoardWithCfgValsetNamesItsList) {
-    for (const BoardProfile& board : boards_with_values())
+    std::set<std::string_view> named;
+    for (const BoardProfile& board : boards_with_values()) {
         ASSERT_NE(board.items_of, nullptr) << board.name;
+        named.insert(board.items_of->name);
+    }
+    for (const firmware::FirmwareList& list : firmware::firmware_lists())
+        EXPECT_TRUE(named.contains(list.name)) << list.name;
 }
 
 TEST(BoardItems, AreThoseOfTheInterfaceDescription) {
