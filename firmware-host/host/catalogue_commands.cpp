@@ -12,6 +12,7 @@
 #include "run/control/command_json.hpp"
 #include "run/fault/fault_kind.hpp"
 #include "run/scenario/board_files.hpp"
+#include "run/scenario/board_listing.hpp"
 #include "run/scenario/key_catalogue.hpp"
 #include "run_options.hpp"
 
@@ -20,48 +21,54 @@ namespace {
 
 struct BoardOptions {
     std::string name;
+    std::string format = "text";
     Verbosity verbosity;
 };
 
-void print_board(const firmware::BoardProfile& board) {
-    std::vector<std::string_view> constellations;
-    for (const Constellation c : board.constellations)
-        constellations.push_back(constellation_name(c));
-    std::vector<std::string> sentences;
-    for (const firmware::SentenceRate& s : board.sentences)
-        sentences.push_back(fmt::format("{}{}", firmware::nmea_sentence_names[static_cast<std::size_t>(s.sentence)],
-                                        s.every_epochs == 1 ? std::string() : fmt::format("/{}", s.every_epochs)));
-    fmt::print("{}\n  {}\n", board.name, board.description);
-    fmt::print("  speed            {} baud, transmit buffer {} bytes\n", board.baud, board.transmit_buffer_bytes);
-    fmt::print("  rate             {:g} Hz, at most {:g} Hz\n", board.default_rate_hz, board.max_rate_hz);
-    fmt::print("  constellations   {}\n", fmt::join(constellations, " "));
-    fmt::print("  elevation mask   {:g} deg\n", board.elevation_mask.deg());
-    fmt::print("  sentences        {}\n", fmt::join(sentences, " "));
-    fmt::print("  latency          {:g} ms\n", board.solution_latency.value() * 1e3);
+// A line each, with the aliases behind it in brackets.
+std::string board_lines(const std::vector<firmware::BoardProfile>& boards) {
+    std::size_t longest = 0;
+    for (const firmware::BoardProfile& board : boards)
+        longest = std::max(longest, board.name.size());
+    std::string text;
+    for (const firmware::BoardProfile& board : boards) {
+        const std::string aliases =
+            board.aliases.empty() ? std::string() : fmt::format(" [{}]", fmt::join(board.aliases, ", "));
+        text += fmt::format("{:<{}}  {}{}\n", board.name, longest, board.description, aliases);
+    }
+    return text;
+}
+
+std::string boards_json(const std::vector<firmware::BoardProfile>& boards) {
+    Json list = Json::array();
+    for (const firmware::BoardProfile& board : boards)
+        list.push_back({{"name", board.name}, {"description", board.description}, {"aliases", board.aliases}});
+    return json_text(list) + "\n";
+}
+
+int show_board(const BoardOptions& options, const Messages& messages) {
+    const auto folders = board_folders(data_folders());
+    const auto text = options.format == "json" ? board_json(options.name, folders) : board_text(options.name, folders);
+    if (!text) return messages.error(text.error());
+    fmt::print("{}", *text);
+    return 0;
 }
 
 int show_boards(const BoardOptions& options) {
     const Messages messages(options.verbosity);
+    if (!options.name.empty()) return show_board(options, messages);
     const auto folders = board_folders(data_folders());
-    if (!options.name.empty()) {
-        const auto board = find_board(options.name, folders);
+    std::vector<firmware::BoardProfile> boards;
+    for (const std::string& name : list_boards(folders)) {
+        auto board = find_board(name, folders);
         if (!board) return messages.error(board.error());
-        print_board(*board);
-        return 0;
+        boards.push_back(std::move(*board));
     }
-    const auto names = list_boards(folders);
-    if (names.empty())
+    if (boards.empty())
         return messages.error(
             {ErrorCode::outside, fmt::format("no boards in {}; SKYLOOP_DATA_DIR may name the folder that holds boards/",
                                              folders.front().string())});
-    std::size_t longest = 0;
-    for (const std::string& name : names)
-        longest = std::max(longest, name.size());
-    for (const std::string& name : names) {
-        const auto board = find_board(name, folders);
-        if (!board) return messages.error(board.error());
-        fmt::print("{:<{}}  {}\n", board->name, longest, board->description);
-    }
+    fmt::print("{}", options.format == "json" ? boards_json(boards) : board_lines(boards));
     return 0;
 }
 
@@ -70,7 +77,8 @@ int show_boards(const BoardOptions& options) {
 Action add_boards_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("boards", "The receiver profiles, or one in full");
     auto options = std::make_shared<BoardOptions>();
-    command->add_option("NAME", options->name, "A profile's name");
+    command->add_option("NAME", options->name, "A profile's name, or that of a module");
+    command->add_option("--format", options->format, "text or json")->check(CLI::IsMember({"text", "json"}));
     add_verbosity_options(*command, options->verbosity);
     return [options] { return show_boards(*options); };
 }

@@ -97,7 +97,10 @@ _skyloop_reply()
     local kind=$1 known=$2 head=$3 cur=$4 name line cut='' i
     local -a found
     case $kind in
-        board) while read -r name line; do known+=" $name"; done < <(skyloop boards 2>/dev/null) ;;
+        board) while read -r name line; do
+                   known+=" $name"
+                   [[ $line == *']' ]] && line=${line##*'['} && known+=" ${line//[],]/}"
+               done < <(skyloop boards 2>/dev/null) ;;
         fault) while IFS= read -r line; do
                    [[ $line == '  '* ]] && read -r name _ <<<"$line" && known+=" $name"
                done < <(skyloop faults 2>/dev/null) ;;
@@ -253,8 +256,9 @@ constexpr std::string_view zsh_head = R"zsh(#compdef skyloop
 # Written by skyloop help-pages, from what the commands declare.
 
 _skyloop_boards() {
-    local -a names
-    names=(${${(f)"$(skyloop boards 2>/dev/null)"}%% *})
+    local -a lines names
+    lines=(${(f)"$(skyloop boards 2>/dev/null)"})
+    names=(${lines%% *} ${=${${${(M)lines:#*\]}##*\[}//[],]/}})
     _alternative 'boards:board:compadd -a names' 'files:file:_files'
 }
 

@@ -173,7 +173,8 @@ class Bash(unittest.TestCase):
         self.assertEqual(self.complete("skyloop power relay:1:2/1 o"), ["on", "off"])
 
     def test_boards_and_faults(self):
-        self.assertEqual(self.complete("skyloop run --board ublox-f9"), ["ublox-f9p"])
+        self.assertEqual(self.complete("skyloop run --board ublox-f1"), ["ublox-f10"])
+        self.assertEqual(set(self.complete("skyloop run --board NEO-M8")), {"NEO-M8N", "NEO-M8P", "NEO-M8P-2", "NEO-M8Q"})
         self.assertIn("jamming", self.complete("skyloop faults ja"))
         self.assertEqual(self.complete("skyloop boards sept"), ["septentrio-sbf"])
 
@@ -269,7 +270,7 @@ class Zsh(unittest.TestCase):
         self.becomes("skyloop schema --format mark", "skyloop schema --format markdown\n")
         self.becomes("skyloop run --model whole", "skyloop run --model whole-path\n")
         self.becomes("skyloop run --model=whole", "skyloop run --model=whole-path\n")
-        self.becomes("skyloop run --board=ublox-f9", "skyloop run --board=ublox-f9p\n")
+        self.becomes("skyloop run --board=ublox-f1", "skyloop run --board=ublox-f10\n")
 
     def test_subcommands(self):
         self.becomes("skyloop campaign gath", "skyloop campaign gather\n")
@@ -278,7 +279,8 @@ class Zsh(unittest.TestCase):
         self.becomes("skyloop campaign report --wor", "skyloop campaign report --worst\n")
 
     def test_boards_faults_files_and_ports(self):
-        self.becomes("skyloop run --board ublox-f9", "skyloop run --board ublox-f9p\n")
+        self.becomes("skyloop run --board ublox-f1", "skyloop run --board ublox-f10\n")
+        self.becomes("skyloop run --board ZED-X", "skyloop run --board ZED-X20P\n")
         self.becomes("skyloop faults jammi", "skyloop faults jamming\n")
         self.becomes("skyloop check fli", "skyloop check flight.toml\n")
         self.becomes("skyloop run --port ser", "skyloop run --port serial:\n")

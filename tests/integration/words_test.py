@@ -66,7 +66,7 @@ MISUSES = [
      "skyloop: faults: --format markdown lists all of them; expected text or json beside a NAME"),
     (["boards", "ublox-m88"],
      "skyloop: board 'ublox-m88' is not known; did you mean 'ublox-m8'?"),
-    (["boards", "NEO-M8"], "skyloop: board 'NEO-M8' is not known; did you mean 'ublox-m8'?"),
+    (["boards", "MAX-M8"], "skyloop: board 'MAX-M8' is not known; did you mean 'ublox-m8'?"),
     (["check", "--board", "m8"], "skyloop: --board: board 'm8' is not known; did you mean 'ublox-m8'?"),
     (["run", "--port", "/dev/ttyUSB0"],
      "skyloop: --port: port '/dev/ttyUSB0': no such kind of port; did you mean 'serial:/dev/ttyUSB0'?"),

@@ -221,7 +221,7 @@ void read_board_sentences(TableReader& rates, std::vector<firmware::SentenceRate
 
 void read_one_of(TableReader& table, std::string_view key, std::span<const std::string_view> words,
                  std::string& value) {
-    if (const auto index = table.choice(key, words)) value = words[*index];
+    if (const auto index = table.choice(key, words, {}, value)) value = words[*index];
 }
 
 void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
