@@ -17,7 +17,7 @@
 #include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "support/run_parts.hpp"
 

@@ -48,7 +48,7 @@ using UbxOutputTypes =
              NavHpposecef, NavHpposllh, NavTimegps, NavTimeutc, NavClock, NavTimeglo, NavTimebds, NavTimegal, NavTimels,
              NavTimeqzss, NavSvinfo, NavDgps, NavSbas, NavOrb, NavSat, NavCov, NavGeofence, NavSvin, NavRelposned0,
              NavRelposned, NavEell, NavSlas, NavSig, NavAopstatus, NavEoe, NavPl, RxmSfrbx, RxmMeasx, RxmRawx, RxmSvsi,
-             RxmRtcm, RxmRlm, InfError, InfWarning, InfNotice, InfTest, InfDebug, AckAck, AckNak, MonIo, MonVer,
+             RxmRtcm, RxmCor, RxmRlm, InfError, InfWarning, InfNotice, InfTest, InfDebug, AckAck, AckNak, MonIo, MonVer,
              MonMsgpp, MonRxbuf, MonTxbuf, MonHw, MonHwLong, MonHwShort, MonHw2, MonRxr, MonPatch, MonGnss, MonSpan,
              MonComms, MonHw3, MonRf, MonSys, TimTp, TimTm2, TimVrfy, MgaAck, SecUniqid, SecSig1, SecSig2, SecSiglog,
              EsfStatus, HnrPvt, HnrAtt, HnrIns>;

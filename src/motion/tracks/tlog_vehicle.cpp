@@ -212,8 +212,8 @@ void TlogVehicle::take_truth(const TlogFrame& frame) {
 // PX4 leaves the time at 0.
 void TlogVehicle::take_hil(const TlogFrame& frame) {
     const auto message = decode_mavlink<MavlinkHilStateQuaternion>(frame.frame.payload);
-    const auto told =
-        static_cast<double>(message.time_usec == 0 ? static_cast<std::uint64_t>(frame.stamp_us) : message.time_usec);
+    const auto told = static_cast<double>(message.time_usec == 0 ? static_cast<std::uint64_t>(frame.stamp_us)
+                                                                 : message.time_usec.raw);
     const auto gps = gps_ns_of_posix_us(told);
     const auto ns = gps ? gps : flight_clock_ns(told);
     auto row = flight_row(ns.value_or(0), message.lat * degree_of_1e7, message.lon * degree_of_1e7, message.alt * 1e-3);

@@ -154,7 +154,7 @@ void StreamReader::take_version(const UbxFrameView& frame) {
     if (!version) return;
     std::string texts = text_of(version->sw_version);
     for (const auto& extension : version->extensions)
-        texts += ", " + text_of(extension.characters);
+        texts += ", " + text_of(extension);
     of_ubx_.log.receiver = "MON-VER " + text_of(version->hw_version) + ", " + texts;
     of_ubx_.log.board = board_of_version(text_of(version->hw_version), texts);
 }

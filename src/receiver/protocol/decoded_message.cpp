@@ -22,7 +22,7 @@ constexpr std::size_t rtcm3_frame_head = 3, rtcm3_frame_tail = 3;
 
 template <class Message>
 void list_message(const Message& found, DecodedMessage& message) {
-    FieldLister lister(Message::field_names);
+    FieldLister lister;
     walk_fields(found, lister);
     message.fields = lister.take();
 }

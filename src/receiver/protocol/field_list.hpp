@@ -1,12 +1,13 @@
-/// Payloads from field lists: a message names its fields once, and encoding, decoding, size and listing follow.
+/// Payloads from field lists: a message declares its fields once (field.hpp), and encoding, decoding, size and listing
+/// follow.
 ///
-/// The fields are the members of the struct, in their order: numbers (little-endian; U1 … U8, I1 … I4, R4, R8, X1 …),
+/// The fields are the members of the struct, in their order: declared fields, plain numbers (little-endian),
 /// std::arrays and structs of them. A message with lists, a tail or odd sizes says itself how its bytes follow each
-/// other, in a `static void fields(auto& m, auto& v)` that calls, in the order of the bytes,
-/// `v(m.a, m.b, …)` for such members, `v.count(m.items)` for a U1 that counts what `v.items(m.items)` later writes,
-/// `v.rest(m.items, least, most)` for what fills the payload, `v.if_present(m.optional)` for a tail that older firmware
-/// leaves out and `v.sized(m.value, bytes)` for an integer of three bytes, or whose size another field gives. UBX, MSP,
-/// MAVLink and SBF use it.
+/// other, in a `static void fields(auto& m, auto& v)` that calls, in the order of the bytes, `v(m.a, m.b, …)` for such
+/// members, `v.count(m.items)` for a U1 that counts what `v.items(m.items)` later writes, `v.rest(m.items, least,
+/// most)` for what fills the payload, `v.if_present(m.optional)` for a tail that older firmware leaves out and
+/// `v.sized(m.value, bytes)` for an integer of three bytes, or whose size another field gives. UBX, MSP, MAVLink and
+/// SBF use it.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "base/core/bytes.hpp"
+#include "receiver/protocol/field.hpp"
 #include "receiver/protocol/members.hpp"
 
 namespace skyloop::inline receiver {
@@ -46,6 +48,9 @@ using Unsigned = std::conditional_t<
 
 template <class T>
 concept Number = std::is_arithmetic_v<T>;
+/// A struct of members.
+template <class T>
+concept Group = !Number<T> && !DeclaredField<T>;
 
 class Writer {
 public:
@@ -83,13 +88,19 @@ private:
     void put(T value) {
         sized(std::bit_cast<Unsigned<sizeof(T)>>(value), sizeof(T));
     }
+    template <class Raw>
+    void put(const RawNumber<Raw>& number) {
+        put(number.raw);
+    }
     template <class T, std::size_t N>
     void put(const std::array<T, N>& fields) {
         for (const T& field : fields)
             put(field);
     }
-    template <class T>
-    requires(!Number<T>) void put(const T& group) { walk_fields(group, *this); }
+    template <Group T>
+    void put(const T& group) {
+        walk_fields(group, *this);
+    }
 
     Bytes bytes_;
 };
@@ -148,13 +159,19 @@ private:
         sized(raw, sizeof(T));
         value = std::bit_cast<T>(static_cast<Unsigned<sizeof(T)>>(raw));
     }
+    template <class Raw>
+    void pick(RawNumber<Raw>& number) {
+        pick(number.raw);
+    }
     template <class T, std::size_t N>
     void pick(std::array<T, N>& fields) {
         for (T& field : fields)
             pick(field);
     }
-    template <class T>
-    requires(!Number<T>) void pick(T& group) { walk_fields(group, *this); }
+    template <Group T>
+    void pick(T& group) {
+        walk_fields(group, *this);
+    }
 
     ByteSpan left_;
     bool good_ = true;

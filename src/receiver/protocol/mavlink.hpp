@@ -76,14 +76,12 @@ struct MavlinkHeartbeat {
     static constexpr std::uint8_t crc_extra = 50;
     static constexpr std::size_t base_size = 9;
     static constexpr std::string_view message_name = "HEARTBEAT";
-    static constexpr std::string_view field_names =
-        "custom_mode type autopilot base_mode system_status mavlink_version";
-    std::uint32_t custom_mode = 0;
-    std::uint8_t type = 41;      ///< 41: MAV_TYPE_GPS
-    std::uint8_t autopilot = 8;  ///< 8: none
-    std::uint8_t base_mode = 0;
-    std::uint8_t system_status = 4;  ///< 4: active
-    std::uint8_t mavlink_version = 3;
+    U4<"custom_mode"> custom_mode{};
+    U1<"type"> type = 41;           ///< 41: MAV_TYPE_GPS
+    U1<"autopilot"> autopilot = 8;  ///< 8: none
+    U1<"base_mode"> base_mode{};
+    U1<"system_status"> system_status = 4;  ///< 4: active
+    U1<"mavlink_version"> mavlink_version = 3;
 };
 
 /// COMMAND_LONG: asks a component to do something; what the parameters mean depends on the command (MAV_CMD).
@@ -92,13 +90,17 @@ struct MavlinkCommandLong {
     static constexpr std::uint8_t crc_extra = 152;
     static constexpr std::size_t base_size = 33;
     static constexpr std::string_view message_name = "COMMAND_LONG";
-    static constexpr std::string_view field_names =
-        "param1 param2 param3 param4 param5 param6 param7 command target_system target_component confirmation";
-    float param1 = 0, param2 = 0, param3 = 0, param4 = 0, param5 = 0, param6 = 0, param7 = 0;
-    std::uint16_t command = 0;
-    std::uint8_t target_system = 0;     ///< 0: all
-    std::uint8_t target_component = 0;  ///< 0: all
-    std::uint8_t confirmation = 0;      ///< how often it has been sent before
+    R4<"param1"> param1{};
+    R4<"param2"> param2{};
+    R4<"param3"> param3{};
+    R4<"param4"> param4{};
+    R4<"param5"> param5{};
+    R4<"param6"> param6{};
+    R4<"param7"> param7{};
+    U2<"command"> command{};
+    U1<"target_system"> target_system{};        ///< 0: all
+    U1<"target_component"> target_component{};  ///< 0: all
+    U1<"confirmation"> confirmation{};          ///< how often it has been sent before
 };
 
 /// COMMAND_INT: as COMMAND_LONG, with a place in whole numbers.
@@ -107,18 +109,19 @@ struct MavlinkCommandInt {
     static constexpr std::uint8_t crc_extra = 158;
     static constexpr std::size_t base_size = 35;
     static constexpr std::string_view message_name = "COMMAND_INT";
-    static constexpr std::string_view field_names =
-        "param1 param2 param3 param4 x y z command target_system target_component frame current autocontinue";
-    float param1 = 0, param2 = 0, param3 = 0, param4 = 0;
-    std::int32_t x = 0;  ///< 1e-7 deg of latitude or 1e-4 m, by `frame`
-    std::int32_t y = 0;  ///< … of longitude
-    float z = 0;         ///< m
-    std::uint16_t command = 0;
-    std::uint8_t target_system = 0;     ///< 0: all
-    std::uint8_t target_component = 0;  ///< 0: all
-    std::uint8_t frame = 0;
-    std::uint8_t current = 0;
-    std::uint8_t autocontinue = 0;
+    R4<"param1"> param1{};
+    R4<"param2"> param2{};
+    R4<"param3"> param3{};
+    R4<"param4"> param4{};
+    I4<"x"> x{};  ///< 1e-7 deg of latitude or 1e-4 m, by `frame`
+    I4<"y"> y{};  ///< … of longitude
+    R4<"z"> z{};  ///< m
+    U2<"command"> command{};
+    U1<"target_system"> target_system{};        ///< 0: all
+    U1<"target_component"> target_component{};  ///< 0: all
+    U1<"frame"> frame{};
+    U1<"current"> current{};
+    U1<"autocontinue"> autocontinue{};
 };
 
 /// COMMAND_ACK: what becomes of a command.
@@ -127,14 +130,12 @@ struct MavlinkCommandAck {
     static constexpr std::uint8_t crc_extra = 143;
     static constexpr std::size_t base_size = 3;
     static constexpr std::string_view message_name = "COMMAND_ACK";
-    static constexpr std::string_view field_names =
-        "command result progress result_param2 target_system target_component";
-    std::uint16_t command = 0;
-    std::uint8_t result = 0;         ///< MavlinkResult
-    std::uint8_t progress = 0;       ///< %; this and what follows are extensions
-    std::int32_t result_param2 = 0;  ///< depends on the command
-    std::uint8_t target_system = 0;  ///< of who has asked
-    std::uint8_t target_component = 0;
+    U2<"command"> command{};
+    U1<"result"> result{};                ///< MavlinkResult
+    U1<"progress"> progress{};            ///< %; this and what follows are extensions
+    I4<"result_param2"> result_param2{};  ///< depends on the command
+    U1<"target_system"> target_system{};  ///< of who has asked
+    U1<"target_component"> target_component{};
 };
 
 /// MAV_RESULT of common.xml, as far as it is used here.
@@ -146,28 +147,25 @@ struct MavlinkGpsInput {
     static constexpr std::uint8_t crc_extra = 151;
     static constexpr std::size_t base_size = 63;
     static constexpr std::string_view message_name = "GPS_INPUT";
-    static constexpr std::string_view field_names =
-        "unix_time_s*1e-6 tow_s*1e-3 lat_deg*1e-7 lon_deg*1e-7 msl_m hdop!65535 vdop!65535 vel_north_mps vel_east_mps "
-        "vel_down_mps speed_acc_mps h_acc_m v_acc_m ignore_flags gps_week gps_id fix_type satellites yaw_deg*1e-2!0";
-    std::uint64_t time_usec = 0;     ///< us since 1970, as POSIX counts
-    std::uint32_t time_week_ms = 0;  ///< ms, GPS time of week
-    std::int32_t lat = 0;            ///< 1e-7 deg
-    std::int32_t lon = 0;            ///< 1e-7 deg
-    float alt = 0;                   ///< m above mean sea level
-    float hdop = 65535;              ///< 65535 unknown
-    float vdop = 65535;
-    float vn = 0;                    ///< m/s
-    float ve = 0;                    ///< m/s
-    float vd = 0;                    ///< m/s
-    float speed_accuracy = 0;        ///< m/s
-    float horiz_accuracy = 0;        ///< m
-    float vert_accuracy = 0;         ///< m
-    std::uint16_t ignore_flags = 0;  ///< bits: 0 alt, 1 hdop, 2 vdop, 3 vn ve, 4 vd, 5 to 7 the accuracies
-    std::uint16_t time_week = 0;     ///< GPS week, not wrapped; 0 unknown
-    std::uint8_t gps_id = 0;
-    std::uint8_t fix_type = 0;  ///< 0 no receiver, 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed
-    std::uint8_t satellites_visible = 0;
-    std::uint16_t yaw = 0;  ///< 0.01 deg, 36000 for north; 0 unknown; an extension
+    U8<"unix_time_s*1e-6"> time_usec{};  ///< since 1970, as POSIX counts
+    U4<"tow_s*1e-3"> time_week_ms{};     ///< GPS time of week
+    I4<"lat_deg*1e-7"> lat{};
+    I4<"lon_deg*1e-7"> lon{};
+    R4<"msl_m"> alt{};              ///< above mean sea level
+    R4<"hdop!65535"> hdop = 65535;  ///< 65535 unknown
+    R4<"vdop!65535"> vdop = 65535;
+    R4<"vel_north_mps"> vn{};
+    R4<"vel_east_mps"> ve{};
+    R4<"vel_down_mps"> vd{};
+    R4<"speed_acc_mps"> speed_accuracy{};
+    R4<"h_acc_m"> horiz_accuracy{};
+    R4<"v_acc_m"> vert_accuracy{};
+    U2<"ignore_flags"> ignore_flags{};  ///< bits: 0 alt, 1 hdop, 2 vdop, 3 vn ve, 4 vd, 5 to 7 the accuracies
+    U2<"gps_week"> time_week{};         ///< GPS week, not wrapped; 0 unknown
+    U1<"gps_id"> gps_id{};
+    U1<"fix_type"> fix_type{};  ///< 0 no receiver, 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed
+    U1<"satellites"> satellites_visible{};
+    U2<"yaw_deg*1e-2!0"> yaw{};  ///< 36000 for north; 0 unknown; an extension
 };
 
 /// GPS_RAW_INT: what an autopilot's receiver reports to the ground.
@@ -176,26 +174,22 @@ struct MavlinkGpsRawInt {
     static constexpr std::uint8_t crc_extra = 24;
     static constexpr std::size_t base_size = 30;
     static constexpr std::string_view message_name = "GPS_RAW_INT";
-    static constexpr std::string_view field_names =
-        "time_s*1e-6 lat_deg*1e-7 lon_deg*1e-7 msl_m*1e-3 hdop*1e-2!65535 vdop*1e-2!65535 speed_mps*1e-2!65535 "
-        "course_deg*1e-2!65535 fix_type satellites!255 height_m*1e-3 h_acc_m*1e-3 v_acc_m*1e-3 speed_acc_mps*1e-3 "
-        "course_acc_deg*1e-5 yaw_deg*1e-2!0";
-    std::uint64_t time_usec = 0;  ///< us, of 1970 or of the start
-    std::int32_t lat = 0;         ///< 1e-7 deg
-    std::int32_t lon = 0;         ///< 1e-7 deg
-    std::int32_t alt = 0;         ///< mm above mean sea level
-    std::uint16_t eph = 0xFFFF;   ///< HDOP, 0.01
-    std::uint16_t epv = 0xFFFF;   ///< VDOP, 0.01
-    std::uint16_t vel = 0xFFFF;   ///< cm/s
-    std::uint16_t cog = 0xFFFF;   ///< 0.01 deg
-    std::uint8_t fix_type = 0;    ///< as MavlinkGpsInput::fix_type
-    std::uint8_t satellites_visible = 0xFF;
-    std::int32_t alt_ellipsoid = 0;  ///< mm; this and what follows are extensions
-    std::uint32_t h_acc = 0;         ///< mm
-    std::uint32_t v_acc = 0;         ///< mm
-    std::uint32_t vel_acc = 0;       ///< mm/s
-    std::uint32_t hdg_acc = 0;       ///< 1e-5 deg
-    std::uint16_t yaw = 0;           ///< 0.01 deg, 36000 for north; 0 unknown
+    U8<"time_s*1e-6"> time_usec{};  ///< of 1970 or of the start
+    I4<"lat_deg*1e-7"> lat{};
+    I4<"lon_deg*1e-7"> lon{};
+    I4<"msl_m*1e-3"> alt{};  ///< above mean sea level
+    U2<"hdop*1e-2!65535"> eph = 0xFFFF;
+    U2<"vdop*1e-2!65535"> epv = 0xFFFF;
+    U2<"speed_mps*1e-2!65535"> vel = 0xFFFF;
+    U2<"course_deg*1e-2!65535"> cog = 0xFFFF;
+    U1<"fix_type"> fix_type{};  ///< as MavlinkGpsInput::fix_type
+    U1<"satellites!255"> satellites_visible = 0xFF;
+    I4<"height_m*1e-3"> alt_ellipsoid{};  ///< this and what follows are extensions
+    U4<"h_acc_m*1e-3"> h_acc{};
+    U4<"v_acc_m*1e-3"> v_acc{};
+    U4<"speed_acc_mps*1e-3"> vel_acc{};
+    U4<"course_acc_deg*1e-5"> hdg_acc{};
+    U2<"yaw_deg*1e-2!0"> yaw{};  ///< 36000 for north; 0 unknown
 };
 
 /// GPS_RTCM_DATA: a piece of an RTCM stream on its way to a receiver.
@@ -204,10 +198,9 @@ struct MavlinkGpsRtcmData {
     static constexpr std::uint8_t crc_extra = 35;
     static constexpr std::size_t base_size = 182;
     static constexpr std::string_view message_name = "GPS_RTCM_DATA";
-    static constexpr std::string_view field_names = "flags length data";
-    std::uint8_t flags = 0;  ///< bits: 0 a fragment, 1-2 which, 3-7 of which message
-    std::uint8_t length = 0;
-    std::array<std::uint8_t, 180> data{};
+    U1<"flags"> flags{};  ///< bits: 0 a fragment, 1-2 which, 3-7 of which message
+    U1<"length"> length{};
+    U1<"data", 180> data{};
 };
 
 /// The version 2 frame of a message.

@@ -44,48 +44,42 @@ std::optional<MspFrameView> parse_msp(ByteSpan bytes);
 struct MspSensorGps {
     static constexpr std::uint16_t function = 0x1F03;
     static constexpr std::string_view message_name = "MSP2_SENSOR_GPS";
-    static constexpr std::string_view field_names =
-        "instance gps_week!65535 tow_s*1e-3 fix_type satellites h_acc_m*1e-2!65535 v_acc_m*1e-2!65535 "
-        "speed_acc_mps*1e-2!65535 dop*1e-2 lon_deg*1e-7 lat_deg*1e-7 msl_m*1e-2 vel_north_mps*1e-2 "
-        "vel_east_mps*1e-2 vel_down_mps*1e-2 course_deg*1e-2 yaw_deg*1e-2!65535 year month day hour minute second";
-    std::uint8_t instance = 0;
-    std::uint16_t gps_week = 0xFFFF;  ///< not wrapped; 65535 unknown
-    std::uint32_t ms_tow = 0;         ///< ms
-    std::uint8_t fix_type =
-        0;  ///< 0 no receiver or no fix, 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed
-    std::uint8_t satellites = 0;       ///< used
-    std::uint16_t h_acc = 0xFFFF;      ///< cm
-    std::uint16_t v_acc = 0xFFFF;      ///< cm
-    std::uint16_t speed_acc = 0xFFFF;  ///< cm/s
-    std::uint16_t dop = 9999;          ///< 0.01; ArduPilot takes it for HDOP
-    std::int32_t longitude = 0;        ///< 1e-7 deg
-    std::int32_t latitude = 0;         ///< 1e-7 deg
-    std::int32_t msl_altitude = 0;     ///< cm
-    std::int32_t vel_north = 0;        ///< cm/s
-    std::int32_t vel_east = 0;         ///< cm/s
-    std::int32_t vel_down = 0;         ///< cm/s
-    std::uint16_t course = 0;          ///< 0.01 deg
-    std::uint16_t true_yaw = 0xFFFF;   ///< 0.01 deg; 65535 none
-    std::uint16_t year = 0;            ///< UTC
-    std::uint8_t month = 0;
-    std::uint8_t day = 0;
-    std::uint8_t hour = 0;
-    std::uint8_t minute = 0;
-    std::uint8_t second = 0;
+    U1<"instance"> instance{};
+    U2<"gps_week!65535"> gps_week = 0xFFFF;  ///< not wrapped; 65535 unknown
+    U4<"tow_s*1e-3"> ms_tow{};
+    U1<"fix_type">
+        fix_type{};  ///< 0 no receiver or no fix, 1 none, 2 2D, 3 3D, 4 differential, 5 RTK float, 6 RTK fixed
+    U1<"satellites"> satellites{};  ///< used
+    U2<"h_acc_m*1e-2!65535"> h_acc = 0xFFFF;
+    U2<"v_acc_m*1e-2!65535"> v_acc = 0xFFFF;
+    U2<"speed_acc_mps*1e-2!65535"> speed_acc = 0xFFFF;
+    U2<"dop*1e-2"> dop = 9999;  ///< ArduPilot takes it for HDOP
+    I4<"lon_deg*1e-7"> longitude{};
+    I4<"lat_deg*1e-7"> latitude{};
+    I4<"msl_m*1e-2"> msl_altitude{};
+    I4<"vel_north_mps*1e-2"> vel_north{};
+    I4<"vel_east_mps*1e-2"> vel_east{};
+    I4<"vel_down_mps*1e-2"> vel_down{};
+    U2<"course_deg*1e-2"> course{};
+    U2<"yaw_deg*1e-2!65535"> true_yaw = 0xFFFF;  ///< 65535 none
+    U2<"year"> year{};                           ///< UTC
+    U1<"month"> month{};
+    U1<"day"> day{};
+    U1<"hour"> hour{};
+    U1<"minute"> minute{};
+    U1<"second"> second{};
 };
 
 /// MSP_SET_RAW_GPS: the older, short form, 14 bytes in a version 1 frame.
 struct MspSetRawGps {
     static constexpr std::uint16_t function = 201;
     static constexpr std::string_view message_name = "MSP_SET_RAW_GPS";
-    static constexpr std::string_view field_names =
-        "fix satellites lat_deg*1e-7 lon_deg*1e-7 altitude_m speed_mps*1e-2";
-    std::uint8_t fix = 0;  ///< 0 none, 1 there is one
-    std::uint8_t satellites = 0;
-    std::int32_t latitude = 0;   ///< 1e-7 deg
-    std::int32_t longitude = 0;  ///< 1e-7 deg
-    std::uint16_t altitude = 0;  ///< m above mean sea level, none below it
-    std::uint16_t speed = 0;     ///< cm/s
+    U1<"fix"> fix{};  ///< 0 none, 1 there is one
+    U1<"satellites"> satellites{};
+    I4<"lat_deg*1e-7"> latitude{};
+    I4<"lon_deg*1e-7"> longitude{};
+    U2<"altitude_m"> altitude{};  ///< above mean sea level, none below it
+    U2<"speed_mps*1e-2"> speed{};
 };
 
 /// The frames of the two messages.

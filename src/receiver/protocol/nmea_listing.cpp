@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -109,16 +110,22 @@ struct SentenceName {
     std::string_view group;
 };
 
+// Takes the next one off the front.
 SentenceName sentence_name(std::string_view& names) {
-    const FieldName word = next_field_name(names);
-    SentenceName name{word.name, 0, word.hidden, 0, word.items};
-    if (const std::size_t slash = name.name.find('/'); slash != name.name.npos) {
-        name.kind = name.name[slash + 1];
-        name.name = name.name.substr(0, slash);
-    } else if (const std::size_t brace = name.name.find('{'); brace != name.name.npos) {
-        std::from_chars(name.name.data() + brace + 1, name.name.data() + name.name.size(), name.list);
-        name.name = name.name.substr(0, brace);
-    }
+    std::size_t end = std::min(names.find_first_of(" ["), names.size());
+    if (end < names.size() && names[end] == '[') end = names.find(']') + 1;
+    std::string_view word = names.substr(0, end);
+    names.remove_prefix(std::min(end + 1, names.size()));
+    SentenceName name;
+    name.hidden = word.starts_with('-');
+    if (name.hidden) word.remove_prefix(1);
+    const std::size_t mark = word.find_first_of("/{[");
+    name.name = word.substr(0, mark);
+    if (mark == word.npos) return name;
+    const std::string_view rest = word.substr(mark + 1);
+    if (word[mark] == '/') name.kind = rest[0];
+    if (word[mark] == '{') std::from_chars(rest.data(), rest.data() + rest.size(), name.list);
+    if (word[mark] == '[') name.group = rest.substr(0, rest.size() - 1);
     return name;
 }
 

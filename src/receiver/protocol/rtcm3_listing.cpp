@@ -27,11 +27,12 @@ public:
         fields_.push_back({std::string(name), {value}});
         return value;
     }
-    void scaled(std::string_view names, unsigned bits, bool is_signed) {
-        const FieldName name = next_field_name(names);
-        fields_.push_back({std::string(name.name), is_signed
-                                                       ? scaled_value(reader_.get_signed(static_cast<int>(bits)), name)
-                                                       : scaled_value(reader_.get(static_cast<int>(bits)), name)});
+    template <FieldText Declared>
+    void scaled(unsigned bits, bool is_signed) {
+        static constexpr FieldFormat format = field_format(Declared.view());
+        const auto width = static_cast<int>(bits);
+        fields_.push_back({std::string(format.name), is_signed ? scaled_value(reader_.get_signed(width), format)
+                                                               : scaled_value(reader_.get(width), format)});
     }
     void text(std::string_view name) { fields_.push_back({std::string(name), {counted_text(reader_)}}); }
     /// The numbers of the bits that are set, the first being 1.
@@ -97,9 +98,9 @@ void list_msm(int number, RtcmLister& to) {
     to.number("station", 12);
     if ((number - 1071) / 10 == 1) {
         to.number("day_of_week", 3);
-        to.scaled("time_of_day_s*1e-3", 27, false);
+        to.scaled<"time_of_day_s*1e-3">(27, false);
     } else {
-        to.scaled("tow_s*1e-3", 30, false);
+        to.scaled<"tow_s*1e-3">(30, false);
     }
     to.number("more_follow", 1);
     to.number("issue", 3);
@@ -116,12 +117,12 @@ void list_station(int number, RtcmLister& to) {
     to.number("station", 12);
     to.number("itrf_year", 6);
     to.skip(4);
-    to.scaled("ecef_x_m*1e-4", 38, true);
+    to.scaled<"ecef_x_m*1e-4">(38, true);
     to.skip(2);
-    to.scaled("ecef_y_m*1e-4", 38, true);
+    to.scaled<"ecef_y_m*1e-4">(38, true);
     to.skip(2);
-    to.scaled("ecef_z_m*1e-4", 38, true);
-    if (number == 1006) to.scaled("antenna_height_m*1e-4", 16, false);
+    to.scaled<"ecef_z_m*1e-4">(38, true);
+    if (number == 1006) to.scaled<"antenna_height_m*1e-4">(16, false);
 }
 
 void list_descriptors(int number, RtcmLister& to) {
@@ -139,9 +140,9 @@ void list_descriptors(int number, RtcmLister& to) {
 void list_observables(int number, RtcmLister& to) {
     to.number("station", 12);
     if (is_gps_observables(number))
-        to.scaled("tow_s*1e-3", 30, false);
+        to.scaled<"tow_s*1e-3">(30, false);
     else
-        to.scaled("time_of_day_s*1e-3", 27, false);
+        to.scaled<"time_of_day_s*1e-3">(27, false);
     to.number("more_follow", 1);
     to.number("satellites", 5);
 }

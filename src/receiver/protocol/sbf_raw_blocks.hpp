@@ -21,32 +21,32 @@ namespace skyloop::inline receiver {
 /// A further signal of a satellite (MeasEpochChannelType2): differences from the first one, in two parts each. The
 /// lowest numbers of the upper parts, with lower parts of 0, stand for nothing.
 struct SbfOtherSignal {
-    std::uint8_t type = 0;         ///< bits: 0-4 signal (31: see obs_info), 5-7 antenna
-    std::uint8_t lock_time = 255;  ///< s
-    std::uint8_t cn0 = 255;        ///< 0.25 dB-Hz above 10
+    U1<"type"> type{};  ///< bits: 0-4 signal (31: see obs_info), 5-7 antenna
+    U1<"lock_time_s!255"> lock_time = 255;
+    U1<"cn0_above_10_dbhz*2^-2!255"> cn0 = 255;  ///< above 10
     /// Bits: 0-2 of the range, 65.536 m; 3-7 of the Doppler, 6.5536 Hz; both with a sign.
-    std::uint8_t offsets_msb = 0b10000'100;
-    std::int8_t carrier_msb = -128;        ///< 65.536 cycles
-    std::uint8_t obs_info = 0;             ///< as of the first signal
-    std::uint16_t code_offset_lsb = 0;     ///< 0.001 m, beyond the first signal's range
-    std::uint16_t carrier_lsb = 0;         ///< 0.001 cycles, beyond this signal's range
-    std::uint16_t doppler_offset_lsb = 0;  ///< 0.0001 Hz, beyond the first signal's in this signal's cycles
+    U1<"offsets_msb"> offsets_msb = 0b10000'100;
+    I1<"carrier_msb"> carrier_msb = -128;                   ///< 65.536 cycles
+    U1<"obs_info"> obs_info{};                              ///< as of the first signal
+    U2<"code_offset_lsb_m*1e-3"> code_offset_lsb{};         ///< beyond the first signal's range
+    U2<"carrier_lsb*1e-3"> carrier_lsb{};                   ///< 0.001 cycles, beyond this signal's range
+    U2<"doppler_offset_lsb_hz*1e-4"> doppler_offset_lsb{};  ///< beyond the first signal's in this signal's cycles
 };
 
 /// A satellite with its first signal (MeasEpochChannelType1).
 struct SbfMeasuredSatellite {
-    std::uint8_t rx_channel = 0;
-    std::uint8_t type = 0;  ///< bits: 0-4 signal (31: see obs_info), 5-7 antenna
-    std::uint8_t svid = 0;
-    std::uint8_t misc = 0;               ///< bits 0-3: of the range, 4294967.296 m
-    std::uint32_t code_lsb = 0;          ///< 0.001 m; 0 of both: nothing
-    std::int32_t doppler = -2147483648;  ///< 0.0001 Hz, positive when it comes nearer
-    std::uint16_t carrier_lsb = 0;       ///< 0.001 cycles beyond the range; with the lowest upper part: nothing
-    std::int8_t carrier_msb = -128;      ///< 65.536 cycles
-    std::uint8_t cn0 = 255;              ///< 0.25 dB-Hz above 10
-    std::uint16_t lock_time = 0xFFFF;    ///< s
-    std::uint8_t obs_info = 0;  ///< bits: 0 smoothed, 2 half a cycle unknown, 3-7 GLONASS channel + 8, or signal − 32
-    std::vector<SbfOtherSignal> others;
+    U1<"rx_channel"> rx_channel{};
+    U1<"type"> type{};  ///< bits: 0-4 signal (31: see obs_info), 5-7 antenna
+    U1<"svid"> svid{};
+    U1<"code_msb"> misc{};                                    ///< bits 0-3: of the range, 4294967.296 m
+    U4<"code_lsb_m*1e-3"> code_lsb{};                         ///< 0 of both: nothing
+    I4<"doppler_hz*1e-4!-2147483648"> doppler = -2147483648;  ///< positive when it comes nearer
+    U2<"carrier_lsb*1e-3"> carrier_lsb{};        ///< 0.001 cycles beyond the range; with the lowest upper part: nothing
+    I1<"carrier_msb"> carrier_msb = -128;        ///< 65.536 cycles
+    U1<"cn0_above_10_dbhz*2^-2!255"> cn0 = 255;  ///< above 10
+    U2<"lock_time_s!65535"> lock_time = 0xFFFF;
+    U1<"obs_info"> obs_info{};  ///< bits: 0 smoothed, 2 half a cycle unknown, 3-7 GLONASS channel + 8, or signal − 32
+    List<"others", SbfOtherSignal> others;
 
     static void fields(auto& m, auto& v) {
         v(m.rx_channel, m.type, m.svid, m.misc, m.code_lsb, m.doppler, m.carrier_lsb, m.carrier_msb, m.cn0, m.lock_time,
@@ -61,20 +61,14 @@ struct SbfMeasEpoch {
     static constexpr std::uint16_t block_number = 4027;
     static constexpr std::uint8_t block_revision = 1;
     static constexpr std::string_view message_name = "MeasEpoch";
-    static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 -satellite_bytes -signal_bytes common_flags clock_jumps_s*1e-3 -reserved "
-        "satellites[rx_channel type svid code_msb code_lsb_m*1e-3 doppler_hz*1e-4!-2147483648 carrier_lsb*1e-3 "
-        "carrier_msb cn0_above_10_dbhz*25e-2!255 lock_time_s!65535 obs_info others[type lock_time_s!255 "
-        "cn0_above_10_dbhz*25e-2!255 offsets_msb carrier_msb obs_info code_offset_lsb_m*1e-3 carrier_lsb*1e-3 "
-        "doppler_offset_lsb_hz*1e-4]]";
     static constexpr std::uint8_t satellite_bytes = 20, signal_bytes = 12;
     SbfTime time;
     std::uint8_t sb1_length = satellite_bytes;
     std::uint8_t sb2_length = signal_bytes;
-    std::uint8_t common_flags = 0;  ///< bits: 0 multipath mitigated, 1 code smoothed, 3 clock steered
-    std::uint8_t clock_jumps = 0;   ///< ms since the start, modulo 256
+    U1<"common_flags"> common_flags{};       ///< bits: 0 multipath mitigated, 1 code smoothed, 3 clock steered
+    U1<"clock_jumps_s*1e-3"> clock_jumps{};  ///< since the start, modulo 256
     std::uint8_t reserved = 0;
-    std::vector<SbfMeasuredSatellite> satellites;
+    List<"satellites", SbfMeasuredSatellite> satellites;
 
     static void fields(auto& m, auto& v) {
         v(m.time);
@@ -86,17 +80,17 @@ struct SbfMeasEpoch {
 
 /// How well one signal was measured.
 struct SbfSignalExtra {
-    std::uint8_t rx_channel = 0;
-    std::uint8_t type = 0;                    ///< as of MeasEpoch
-    std::int16_t multipath_correction = 0;    ///< 0.001 m, taken off the range
-    std::int16_t smoothing_correction = 0;    ///< 0.001 m, taken off the range
-    std::uint16_t code_variance = 0xFFFF;     ///< 1e-4 m²
-    std::uint16_t carrier_variance = 0xFFFF;  ///< 1e-6 cycles²
-    std::uint16_t lock_time = 0xFFFF;         ///< s
-    std::uint8_t losses = 0;                  ///< of the phase's continuity since the start, modulo 256
-    std::int8_t carrier_multipath = 0;        ///< 1/512 cycles
+    U1<"rx_channel"> rx_channel{};
+    U1<"type"> type{};                                         ///< as of MeasEpoch
+    I2<"multipath_correction_m*1e-3"> multipath_correction{};  ///< taken off the range
+    I2<"smoothing_correction_m*1e-3"> smoothing_correction{};  ///< taken off the range
+    U2<"code_variance_m2*1e-4!65535"> code_variance = 0xFFFF;
+    U2<"carrier_variance_cycles2*1e-6!65535"> carrier_variance = 0xFFFF;
+    U2<"lock_time_s!65535"> lock_time = 0xFFFF;
+    U1<"losses"> losses{};  ///< of the phase's continuity since the start, modulo 256
+    I1<"carrier_multipath_cycles*2^-9"> carrier_multipath{};
     std::uint8_t info = 0;
-    std::uint8_t misc = 0;  ///< bits: 0-2 of C/N0, 0.03125 dB-Hz; 3-7 signal − 32
+    U1<"misc"> misc{};  ///< bits: 0-2 of C/N0, 0.03125 dB-Hz; 3-7 signal − 32
 };
 
 /// MeasExtra: what MeasEpoch leaves out. Blocks of longer parts are not read.
@@ -104,15 +98,11 @@ struct SbfMeasExtra {
     static constexpr std::uint16_t block_number = 4000;
     static constexpr std::uint8_t block_revision = 3;
     static constexpr std::string_view message_name = "MeasExtra";
-    static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 -signal_bytes doppler_var_factor signals[rx_channel type "
-        "multipath_correction_m*1e-3 smoothing_correction_m*1e-3 code_variance_m2*1e-4!65535 "
-        "carrier_variance_cycles2*1e-6!65535 lock_time_s!65535 losses carrier_multipath_cycles*2^-9 -info misc]";
     static constexpr std::uint8_t part_bytes = 16;
     SbfTime time;
     std::uint8_t sb_length = part_bytes;
-    float doppler_var_factor = 0;  ///< the Doppler's variance over the carrier's, mHz²/mcycles²
-    std::vector<SbfSignalExtra> signals;
+    R4<"doppler_var_factor"> doppler_var_factor{};  ///< the Doppler's variance over the carrier's, mHz²/mcycles²
+    List<"signals", SbfSignalExtra> signals;
 
     static void fields(auto& m, auto& v) {
         v(m.time);
@@ -127,7 +117,6 @@ struct SbfEndOfMeas {
     static constexpr std::uint16_t block_number = 5922;
     static constexpr std::uint8_t block_revision = 0;
     static constexpr std::string_view message_name = "EndOfMeas";
-    static constexpr std::string_view field_names = "tow_s*1e-3!4294967295 week!65535";
     SbfTime time;
 };
 
@@ -162,16 +151,14 @@ struct SbfRawPage {
     static constexpr std::uint16_t block_number = Number;
     static constexpr std::uint8_t block_revision = 0;
     static constexpr std::string_view message_name = sbf_page_name(Number);
-    static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 svid crc_passed viterbi_count source freq_nr rx_channel words";
     SbfTime time;
-    std::uint8_t svid = 0;
-    std::uint8_t crc_passed = 1;
-    std::uint8_t viterbi_count = 0;  ///< errors that the Viterbi decoder corrected
-    std::uint8_t source = 0;         ///< bits: 0-4 signal, 5 the halves of an I/NAV page came by different ones
-    std::uint8_t freq_nr = 0;        ///< of GLONASS: channel + 8
-    std::uint8_t rx_channel = 0;
-    std::array<std::uint32_t, Words> words{};
+    U1<"svid"> svid{};
+    U1<"crc_passed"> crc_passed = 1;
+    U1<"viterbi_count"> viterbi_count{};  ///< errors that the Viterbi decoder corrected
+    U1<"source"> source{};                ///< bits: 0-4 signal, 5 the halves of an I/NAV page came by different ones
+    U1<"freq_nr"> freq_nr{};              ///< of GLONASS: channel + 8
+    U1<"rx_channel"> rx_channel{};
+    U4<"words", Words> words{};
 };
 using SbfGpsRawCa = SbfRawPage<4017, 10>;
 /// An even and an odd page of I/NAV: 114 bits, without the tail, and 120.
@@ -182,22 +169,22 @@ using SbfQzsRawL1Ca = SbfRawPage<4066, 10>;
 
 /// The orbit as GPSNav, QZSNav and BDSNav have it.
 struct SbfKeplerOrbit {
-    float c_rs = 0;     ///< m
-    float delta_n = 0;  ///< semicircles/s
-    double m_0 = 0;
-    float c_uc = 0;  ///< rad
-    double e = 0;
-    float c_us = 0;         ///< rad
-    double sqrt_a = 0;      ///< √m
-    std::uint32_t toe = 0;  ///< s
-    float c_ic = 0;         ///< rad
-    double omega_0 = 0;
-    float c_is = 0;  ///< rad
-    double i_0 = 0;
-    float c_rc = 0;  ///< m
-    double omega = 0;
-    float omega_dot = 0;  ///< semicircles/s
-    float idot = 0;       ///< semicircles/s
+    R4<"c_rs_m"> c_rs{};
+    R4<"delta_n"> delta_n{};  ///< semicircles/s
+    R8<"m_0"> m_0{};
+    R4<"c_uc_rad"> c_uc{};
+    R8<"e"> e{};
+    R4<"c_us_rad"> c_us{};
+    R8<"sqrt_a"> sqrt_a{};  ///< √m
+    U4<"toe_s"> toe{};
+    R4<"c_ic_rad"> c_ic{};
+    R8<"omega_0"> omega_0{};
+    R4<"c_is_rad"> c_is{};
+    R8<"i_0"> i_0{};
+    R4<"c_rc_m"> c_rc{};
+    R8<"omega"> omega{};
+    R4<"omega_dot"> omega_dot{};  ///< semicircles/s
+    R4<"idot"> idot{};            ///< semicircles/s
 };
 
 /// GPSNav and QZSNav: the record of subframes 1 to 3. Weeks are modulo 1024.
@@ -206,27 +193,27 @@ struct SbfLnavRecord {
     static constexpr std::uint16_t block_number = Number;
     static constexpr std::uint8_t block_revision = 0;
     static constexpr std::string_view message_name = Number == 5891 ? "GPSNav" : "QZSNav";
-    static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 svid -reserved record_week!65535 code_on_l2 ura health l2_data_flag iodc "
-        "iode2 iode3 fit_interval_flag -reserved tgd_s toc_s af2 af1 af0_s c_rs_m delta_n m_0 c_uc_rad e c_us_rad "
-        "sqrt_a toe_s c_ic_rad omega_0 c_is_rad i_0 c_rc_m omega omega_dot idot toc_week toe_week";
     SbfTime time;
-    std::uint8_t svid = 0;
+    U1<"svid"> svid{};
     std::uint8_t reserved = 0;
-    std::uint16_t week = 0;
-    std::uint8_t code_on_l2 = 0;
-    std::uint8_t ura = 0;  ///< index
-    std::uint8_t health = 0;
-    std::uint8_t l2_data_flag = 0;
-    std::uint16_t iodc = 0;
-    std::uint8_t iode2 = 0, iode3 = 0;  ///< of subframe 2 and of subframe 3
-    std::uint8_t fit_interval_flag = 0;
+    U2<"record_week!65535"> week{};
+    U1<"code_on_l2"> code_on_l2{};
+    U1<"ura"> ura{};  ///< index
+    U1<"health"> health{};
+    U1<"l2_data_flag"> l2_data_flag{};
+    U2<"iodc"> iodc{};
+    U1<"iode2"> iode2{};  ///< of subframe 2 and of subframe 3
+    U1<"iode3"> iode3{};
+    U1<"fit_interval_flag"> fit_interval_flag{};
     std::uint8_t reserved2 = 0;
-    float tgd = 0;          ///< s
-    std::uint32_t toc = 0;  ///< s
-    float af2 = 0, af1 = 0, af0 = 0;
+    R4<"tgd_s"> tgd{};
+    U4<"toc_s"> toc{};
+    R4<"af2"> af2{};
+    R4<"af1"> af1{};
+    R4<"af0_s"> af0{};
     SbfKeplerOrbit orbit;
-    std::uint16_t toc_week = 0, toe_week = 0;
+    U2<"toc_week"> toc_week{};
+    U2<"toe_week"> toe_week{};
 };
 using SbfGpsNav = SbfLnavRecord<5891>;
 using SbfQzsNav = SbfLnavRecord<4095>;
@@ -236,24 +223,24 @@ struct SbfBdsNav {
     static constexpr std::uint16_t block_number = 4081;
     static constexpr std::uint8_t block_revision = 0;
     static constexpr std::string_view message_name = "BDSNav";
-    static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 svid -reserved record_week ura health aodc aode -reserved tgd1_s "
-        "tgd2_s!-2e10 toc_s af2 af1 af0_s c_rs_m delta_n m_0 c_uc_rad e c_us_rad sqrt_a toe_s c_ic_rad omega_0 "
-        "c_is_rad i_0 c_rc_m omega omega_dot idot toc_week toe_week";
     SbfTime time;
-    std::uint8_t svid = 0;
+    U1<"svid"> svid{};
     std::uint8_t reserved = 0;
-    std::uint16_t week = 0;  ///< 0 … 8191
-    std::uint8_t ura = 0;    ///< index
-    std::uint8_t health = 0;
-    std::uint8_t aodc = 0, aode = 0;
+    U2<"record_week"> week{};  ///< 0 … 8191
+    U1<"ura"> ura{};           ///< index
+    U1<"health"> health{};
+    U1<"aodc"> aodc{};
+    U1<"aode"> aode{};
     std::uint16_t reserved2 = 0;
-    float tgd1 = 0;                                ///< s
-    float tgd2 = static_cast<float>(sbf_nothing);  ///< s
-    std::uint32_t toc = 0;                         ///< s
-    float af2 = 0, af1 = 0, af0 = 0;
+    R4<"tgd1_s"> tgd1{};
+    R4<"tgd2_s!-2e10"> tgd2 = sbf_nothing;
+    U4<"toc_s"> toc{};
+    R4<"af2"> af2{};
+    R4<"af1"> af1{};
+    R4<"af0_s"> af0{};
     SbfKeplerOrbit orbit;
-    std::uint16_t toc_week = 0, toe_week = 0;
+    U2<"toc_week"> toc_week{};
+    U2<"toe_week"> toe_week{};
 };
 
 /// GALNav: the record of I/NAV or F/NAV. Weeks are GPS ones, modulo 4096.
@@ -261,26 +248,25 @@ struct SbfGalNav {
     static constexpr std::uint16_t block_number = 4002;
     static constexpr std::uint8_t block_revision = 0;
     static constexpr std::string_view message_name = "GALNav";
-    static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 svid source sqrt_a m_0 e i_0 omega omega_0 omega_dot idot delta_n c_uc_rad "
-        "c_us_rad c_rc_m c_rs_m c_ic_rad c_is_rad toe_s toc_s af2 af1 af0_s toe_week toc_week iod_nav health "
-        "-health_prs sisa_l1_e5a!255 sisa_l1_e5b!255 -sisa_l1a_e6a bgd_l1_e5a_s!-2e10 bgd_l1_e5b_s!-2e10 "
-        "-bgd_l1a_e6a -cnav_encrypted";
     SbfTime time;
-    std::uint8_t svid = 0;
-    std::uint8_t source = 2;  ///< 2 I/NAV, 16 F/NAV: whose clock it is
+    U1<"svid"> svid{};
+    U1<"source"> source = 2;  ///< 2 I/NAV, 16 F/NAV: whose clock it is
     SbfKeplerOrbit orbit;     ///< in an order of its own
-    std::uint32_t toc = 0;    ///< s
-    float af2 = 0, af1 = 0;
-    double af0 = 0;  ///< s
-    std::uint16_t toe_week = 0, toc_week = 0;
-    std::uint16_t iod_nav = 0;
-    std::uint16_t health = 0;  ///< four bits of each of L1-B, E5b, E5a: valid, data validity status, 2 health status
+    U4<"toc_s"> toc{};
+    R4<"af2"> af2{};
+    R4<"af1"> af1{};
+    R8<"af0_s"> af0{};
+    U2<"toe_week"> toe_week{};
+    U2<"toc_week"> toc_week{};
+    U2<"iod_nav"> iod_nav{};
+    U2<"health"> health{};  ///< four bits of each of L1-B, E5b, E5a: valid, data validity status, 2 health status
     std::uint8_t health_prs = 0;
-    std::uint8_t sisa_l1_e5a = 255, sisa_l1_e5b = 255, sisa_l1a_e6a = 255;  ///< indices
-    float bgd_l1_e5a = static_cast<float>(sbf_nothing);                     ///< s
-    float bgd_l1_e5b = static_cast<float>(sbf_nothing);                     ///< s
-    float bgd_l1a_e6a = static_cast<float>(sbf_nothing);
+    U1<"sisa_l1_e5a!255"> sisa_l1_e5a = 255;  ///< indices
+    U1<"sisa_l1_e5b!255"> sisa_l1_e5b = 255;
+    std::uint8_t sisa_l1a_e6a = 255;
+    R4<"bgd_l1_e5a_s!-2e10"> bgd_l1_e5a = sbf_nothing;
+    R4<"bgd_l1_e5b_s!-2e10"> bgd_l1_e5b = sbf_nothing;
+    float bgd_l1a_e6a = sbf_nothing;
     std::uint8_t cnav_encrypted = 255;
 
     template <class M, class V>
@@ -298,28 +284,28 @@ struct SbfGloNav {
     static constexpr std::uint16_t block_number = 4004;
     static constexpr std::uint8_t block_revision = 0;
     static constexpr std::string_view message_name = "GLONav";
-    static constexpr std::string_view field_names =
-        "tow_s*1e-3!4294967295 week!65535 svid freq_nr position_km velocity_kmps acceleration_kmps2 gamma tau_s "
-        "dtau_s toe_s toe_week p1_min p2 age_days health tb_min m p l p4 day accuracy_m*1e-2 -c";
     SbfTime time;
-    std::uint8_t svid = 0;
-    std::uint8_t freq_nr = 0;             ///< channel + 8
-    std::array<double, 3> position{};     ///< km, PZ-90
-    std::array<float, 3> velocity{};      ///< km/s
-    std::array<float, 3> acceleration{};  ///< km/s²
-    float gamma = 0;
-    float tau = 0;               ///< s, what is to be added to the satellite's time
-    float dtau = 0;              ///< s, of L2 against L1
-    std::uint32_t toe = 0;       ///< s, GPS time of week
-    std::uint16_t toe_week = 0;  ///< GPS week modulo 1024
-    std::uint8_t p1 = 30;        ///< min between neighbouring t_b
-    std::uint8_t p2 = 0;
-    std::uint8_t age = 0;     ///< days
-    std::uint8_t health = 0;  ///< B_n, 3 bits; the highest: unhealthy
-    std::uint16_t tb = 0;     ///< min of the Moscow day
-    std::uint8_t m = 1, p = 0, l = 0, p4 = 0;
-    std::uint16_t day = 0;       ///< N_T, within four years
-    std::uint16_t accuracy = 0;  ///< 0.01 m, F_T
+    U1<"svid"> svid{};
+    U1<"freq_nr"> freq_nr{};          ///< channel + 8
+    R8<"position_km", 3> position{};  ///< PZ-90
+    R4<"velocity_kmps", 3> velocity{};
+    R4<"acceleration_kmps2", 3> acceleration{};
+    R4<"gamma"> gamma{};
+    R4<"tau_s"> tau{};          ///< what is to be added to the satellite's time
+    R4<"dtau_s"> dtau{};        ///< of L2 against L1
+    U4<"toe_s"> toe{};          ///< GPS time of week
+    U2<"toe_week"> toe_week{};  ///< GPS week modulo 1024
+    U1<"p1_min"> p1 = 30;       ///< between neighbouring t_b
+    U1<"p2"> p2{};
+    U1<"age_days"> age{};
+    U1<"health"> health{};  ///< B_n, 3 bits; the highest: unhealthy
+    U2<"tb_min"> tb{};      ///< of the Moscow day
+    U1<"m"> m = 1;
+    U1<"p"> p{};
+    U1<"l"> l{};
+    U1<"p4"> p4{};
+    U2<"day"> day{};                   ///< N_T, within four years
+    U2<"accuracy_m*1e-2"> accuracy{};  ///< F_T
     std::uint8_t c = 0;
 };
 

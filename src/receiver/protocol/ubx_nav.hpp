@@ -1,6 +1,6 @@
 /// UBX messages of class NAV that carry the solution.
 ///
-/// Numbers are as on the wire; a member's comment gives unit and scale. Sections are those of the u-blox M8 interface
+/// Fields are declared as field.hpp says. Sections are those of the u-blox M8 interface
 /// description (UBX-13003221) and, where named, of the F9 one (HPG 1.32, UBX-22008968).
 #pragma once
 
@@ -16,43 +16,43 @@ namespace skyloop::inline receiver {
 
 /// What NAV-PVT gained after u-blox 7: heading of the vehicle and magnetic declination.
 struct NavPvtVehicle {
-    std::int32_t head_veh = 0;  ///< 1e-5 deg
-    std::int16_t mag_dec = 0;   ///< 0.01 deg
-    std::uint16_t mag_acc = 0;  ///< 0.01 deg
+    I4<"heading_deg*1e-5"> head_veh{};
+    I2<"declination_deg*1e-2"> mag_dec{};
+    U2<"declination_acc_deg*1e-2"> mag_acc{};
 };
 
 /// NAV-PVT: position, velocity and time; 92 bytes, 84 on u-blox 7.
 struct NavPvt {
     static constexpr UbxMessageId message_id{0x01, 0x07};
-    std::uint32_t i_tow = 0;  ///< ms, GPS time of week of the epoch
-    std::uint16_t year = 0;   ///< UTC
-    std::uint8_t month = 0;   ///< 1 to 12
-    std::uint8_t day = 0;
-    std::uint8_t hour = 0;
-    std::uint8_t minute = 0;
-    std::uint8_t second = 0;    ///< 0 to 60
-    std::uint8_t valid = 0;     ///< bits: 0 date, 1 time, 2 fully resolved, 3 magnetic declination
-    std::uint32_t t_acc = 0;    ///< ns
-    std::int32_t nano = 0;      ///< ns, -1e9 to 1e9
-    std::uint8_t fix_type = 0;  ///< 0 none, 1 dead reckoning, 2 2D, 3 3D, 4 combined, 5 time only
-    std::uint8_t flags = 0;   ///< bits: 0 fix ok, 1 differential, 2-4 power save, 5 heading valid, 6-7 carrier solution
-    std::uint8_t flags2 = 0;  ///< bits: 5 confirmation available, 6 date confirmed, 7 time confirmed
-    std::uint8_t num_sv = 0;  ///< satellites used
-    std::int32_t lon = 0;     ///< 1e-7 deg
-    std::int32_t lat = 0;     ///< 1e-7 deg
-    std::int32_t height = 0;  ///< mm above the ellipsoid
-    std::int32_t h_msl = 0;   ///< mm above mean sea level
-    std::uint32_t h_acc = 0;  ///< mm
-    std::uint32_t v_acc = 0;  ///< mm
-    std::int32_t vel_n = 0;   ///< mm/s
-    std::int32_t vel_e = 0;   ///< mm/s
-    std::int32_t vel_d = 0;   ///< mm/s, down positive
-    std::int32_t g_speed = 0;    ///< mm/s, horizontal
-    std::int32_t head_mot = 0;   ///< 1e-5 deg
-    std::uint32_t s_acc = 0;     ///< mm/s
-    std::uint32_t head_acc = 0;  ///< 1e-5 deg
-    std::uint16_t p_dop = 0;     ///< 0.01
-    std::uint16_t flags3 = 0;    ///< bits: 0 invalid position, 1-4 age of corrections
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    U2<"year"> year{};         ///< UTC
+    U1<"month"> month{};       ///< 1 to 12
+    U1<"day"> day{};
+    U1<"hour"> hour{};
+    U1<"minute"> minute{};
+    U1<"second"> second{};  ///< 0 to 60
+    U1<"valid"> valid{};    ///< bits: 0 date, 1 time, 2 fully resolved, 3 magnetic declination
+    U4<"t_acc_ns"> t_acc{};
+    I4<"nano_ns"> nano{};       ///< -1e9 to 1e9
+    U1<"fix_type"> fix_type{};  ///< 0 none, 1 dead reckoning, 2 2D, 3 3D, 4 combined, 5 time only
+    U1<"flags"> flags{};    ///< bits: 0 fix ok, 1 differential, 2-4 power save, 5 heading valid, 6-7 carrier solution
+    U1<"flags2"> flags2{};  ///< bits: 5 confirmation available, 6 date confirmed, 7 time confirmed
+    U1<"satellites"> num_sv{};  ///< satellites used
+    I4<"lon_deg*1e-7"> lon{};
+    I4<"lat_deg*1e-7"> lat{};
+    I4<"height_m*1e-3"> height{};  ///< above the ellipsoid
+    I4<"msl_m*1e-3"> h_msl{};      ///< above mean sea level
+    U4<"h_acc_m*1e-3"> h_acc{};
+    U4<"v_acc_m*1e-3"> v_acc{};
+    I4<"vel_north_mps*1e-3"> vel_n{};
+    I4<"vel_east_mps*1e-3"> vel_e{};
+    I4<"vel_down_mps*1e-3"> vel_d{};  ///< down positive
+    I4<"speed_mps*1e-3"> g_speed{};   ///< horizontal
+    I4<"course_deg*1e-5"> head_mot{};
+    U4<"speed_acc_mps*1e-3"> s_acc{};
+    U4<"course_acc_deg*1e-5"> head_acc{};
+    U2<"pdop*1e-2"> p_dop{};
+    U2<"flags3"> flags3{};  ///< bits: 0 invalid position, 1-4 age of corrections
     std::uint32_t reserved = 0;
     std::optional<NavPvtVehicle> vehicle;  ///< absent on u-blox 7
 
@@ -67,157 +67,157 @@ struct NavPvt {
 /// NAV-POSECEF: position in the Earth-fixed frame.
 struct NavPosecef {
     static constexpr UbxMessageId message_id{0x01, 0x01};
-    std::uint32_t i_tow = 0;             ///< ms, GPS time of week of the epoch
-    std::array<std::int32_t, 3> ecef{};  ///< cm
-    std::uint32_t p_acc = 0;             ///< cm
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    I4<"ecef_m*1e-2", 3> ecef{};
+    U4<"p_acc_m*1e-2"> p_acc{};
 };
 
 /// NAV-POSLLH: geodetic position.
 struct NavPosllh {
     static constexpr UbxMessageId message_id{0x01, 0x02};
-    std::uint32_t i_tow = 0;  ///< ms, GPS time of week of the epoch
-    std::int32_t lon = 0;     ///< 1e-7 deg
-    std::int32_t lat = 0;     ///< 1e-7 deg
-    std::int32_t height = 0;  ///< mm above the ellipsoid
-    std::int32_t h_msl = 0;   ///< mm above mean sea level
-    std::uint32_t h_acc = 0;  ///< mm
-    std::uint32_t v_acc = 0;  ///< mm
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    I4<"lon_deg*1e-7"> lon{};
+    I4<"lat_deg*1e-7"> lat{};
+    I4<"height_m*1e-3"> height{};  ///< above the ellipsoid
+    I4<"msl_m*1e-3"> h_msl{};      ///< above mean sea level
+    U4<"h_acc_m*1e-3"> h_acc{};
+    U4<"v_acc_m*1e-3"> v_acc{};
 };
 
 /// NAV-STATUS: state of the navigation.
 struct NavStatus {
     static constexpr UbxMessageId message_id{0x01, 0x03};
-    std::uint32_t i_tow = 0;    ///< ms, GPS time of week of the epoch
-    std::uint8_t gps_fix = 0;   ///< as NavPvt::fix_type
-    std::uint8_t flags = 0;     ///< bits: 0 fix ok, 1 differential, 2 week set, 3 time of week set
-    std::uint8_t fix_stat = 0;  ///< bits: 0 corrections, 1 carrier solution valid, 6-7 map matching
-    std::uint8_t flags2 = 0;    ///< bits: 0-1 power save, 3-4 spoofing, 6-7 carrier solution
-    std::uint32_t ttff = 0;     ///< ms to the first fix
-    std::uint32_t msss = 0;     ///< ms since start-up
+    U4<"tow_s*1e-3"> i_tow{};         ///< GPS time of week of the epoch
+    U1<"fix_type"> gps_fix{};         ///< as NavPvt::fix_type
+    U1<"flags"> flags{};              ///< bits: 0 fix ok, 1 differential, 2 week set, 3 time of week set
+    U1<"fix_status"> fix_stat{};      ///< bits: 0 corrections, 1 carrier solution valid, 6-7 map matching
+    U1<"flags2"> flags2{};            ///< bits: 0-1 power save, 3-4 spoofing, 6-7 carrier solution
+    U4<"ttff_s*1e-3"> ttff{};         ///< to the first fix
+    U4<"since_start_s*1e-3"> msss{};  ///< since start-up
 };
 
 /// NAV-DOP: dilutions of precision, each 0.01.
 struct NavDop {
     static constexpr UbxMessageId message_id{0x01, 0x04};
-    std::uint32_t i_tow = 0;  ///< ms, GPS time of week of the epoch
-    std::uint16_t g_dop = 0;
-    std::uint16_t p_dop = 0;
-    std::uint16_t t_dop = 0;
-    std::uint16_t v_dop = 0;
-    std::uint16_t h_dop = 0;
-    std::uint16_t n_dop = 0;
-    std::uint16_t e_dop = 0;
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    U2<"gdop*1e-2"> g_dop{};
+    U2<"pdop*1e-2"> p_dop{};
+    U2<"tdop*1e-2"> t_dop{};
+    U2<"vdop*1e-2"> v_dop{};
+    U2<"hdop*1e-2"> h_dop{};
+    U2<"ndop*1e-2"> n_dop{};
+    U2<"edop*1e-2"> e_dop{};
 };
 
 /// NAV-SOL: solution in the Earth-fixed frame (M8 and older).
 struct NavSol {
     static constexpr UbxMessageId message_id{0x01, 0x06};
-    std::uint32_t i_tow = 0;               ///< ms, GPS time of week of the epoch
-    std::int32_t f_tow = 0;                ///< ns
-    std::int16_t week = 0;                 ///< GPS week
-    std::uint8_t gps_fix = 0;              ///< as NavPvt::fix_type
-    std::uint8_t flags = 0;                ///< as NavStatus::flags
-    std::array<std::int32_t, 3> ecef{};    ///< cm
-    std::uint32_t p_acc = 0;               ///< cm
-    std::array<std::int32_t, 3> ecef_v{};  ///< cm/s
-    std::uint32_t s_acc = 0;               ///< cm/s
-    std::uint16_t p_dop = 0;               ///< 0.01
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    I4<"tow_fraction_ns"> f_tow{};
+    I2<"week"> week{};         ///< GPS week
+    U1<"fix_type"> gps_fix{};  ///< as NavPvt::fix_type
+    U1<"flags"> flags{};       ///< as NavStatus::flags
+    I4<"ecef_m*1e-2", 3> ecef{};
+    U4<"p_acc_m*1e-2"> p_acc{};
+    I4<"ecef_v_mps*1e-2", 3> ecef_v{};
+    U4<"speed_acc_mps*1e-2"> s_acc{};
+    U2<"pdop*1e-2"> p_dop{};
     std::uint8_t reserved1 = 0;
-    std::uint8_t num_sv = 0;  ///< satellites used
+    U1<"satellites"> num_sv{};  ///< satellites used
     std::uint32_t reserved2 = 0;
 };
 
 /// NAV-VELNED: velocity in the local frame.
 struct NavVelned {
     static constexpr UbxMessageId message_id{0x01, 0x12};
-    std::uint32_t i_tow = 0;    ///< ms, GPS time of week of the epoch
-    std::int32_t vel_n = 0;     ///< cm/s
-    std::int32_t vel_e = 0;     ///< cm/s
-    std::int32_t vel_d = 0;     ///< cm/s, down positive
-    std::uint32_t speed = 0;    ///< cm/s, in three dimensions
-    std::uint32_t g_speed = 0;  ///< cm/s, horizontal
-    std::int32_t heading = 0;   ///< 1e-5 deg
-    std::uint32_t s_acc = 0;    ///< cm/s
-    std::uint32_t c_acc = 0;    ///< 1e-5 deg
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    I4<"vel_north_mps*1e-2"> vel_n{};
+    I4<"vel_east_mps*1e-2"> vel_e{};
+    I4<"vel_down_mps*1e-2"> vel_d{};  ///< down positive
+    U4<"speed_3d_mps*1e-2"> speed{};  ///< in three dimensions
+    U4<"speed_mps*1e-2"> g_speed{};   ///< horizontal
+    I4<"course_deg*1e-5"> heading{};
+    U4<"speed_acc_mps*1e-2"> s_acc{};
+    U4<"course_acc_deg*1e-5"> c_acc{};
 };
 
 /// NAV-HPPOSLLH: geodetic position with more digits.
 struct NavHpposllh {
     static constexpr UbxMessageId message_id{0x01, 0x14};
-    std::uint8_t version = 0;  ///< 0
+    U1<"version"> version{};  ///< 0
     std::array<std::uint8_t, 2> reserved{};
-    std::uint8_t flags = 0;     ///< bit 0: invalid
-    std::uint32_t i_tow = 0;    ///< ms, GPS time of week of the epoch
-    std::int32_t lon = 0;       ///< 1e-7 deg
-    std::int32_t lat = 0;       ///< 1e-7 deg
-    std::int32_t height = 0;    ///< mm above the ellipsoid
-    std::int32_t h_msl = 0;     ///< mm above mean sea level
-    std::int8_t lon_hp = 0;     ///< 1e-9 deg, to add
-    std::int8_t lat_hp = 0;     ///< 1e-9 deg, to add
-    std::int8_t height_hp = 0;  ///< 0.1 mm, to add
-    std::int8_t h_msl_hp = 0;   ///< 0.1 mm, to add
-    std::uint32_t h_acc = 0;    ///< 0.1 mm
-    std::uint32_t v_acc = 0;    ///< 0.1 mm
+    U1<"flags"> flags{};       ///< bit 0: invalid
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    I4<"lon_deg*1e-7"> lon{};
+    I4<"lat_deg*1e-7"> lat{};
+    I4<"height_m*1e-3"> height{};        ///< above the ellipsoid
+    I4<"msl_m*1e-3"> h_msl{};            ///< above mean sea level
+    I1<"lon_hp_deg*1e-9"> lon_hp{};      ///< to add
+    I1<"lat_hp_deg*1e-9"> lat_hp{};      ///< to add
+    I1<"height_hp_m*1e-4"> height_hp{};  ///< to add
+    I1<"msl_hp_m*1e-4"> h_msl_hp{};      ///< to add
+    U4<"h_acc_m*1e-4"> h_acc{};
+    U4<"v_acc_m*1e-4"> v_acc{};
 };
 
 /// NAV-COV: covariances in north, east, down, in the order NN, NE, ND, EE, ED, DD.
 struct NavCov {
     static constexpr UbxMessageId message_id{0x01, 0x36};
-    std::uint32_t i_tow = 0;   ///< ms, GPS time of week of the epoch
-    std::uint8_t version = 0;  ///< 0
-    std::uint8_t pos_cov_valid = 0;
-    std::uint8_t vel_cov_valid = 0;
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    U1<"version"> version{};   ///< 0
+    U1<"position_valid"> pos_cov_valid{};
+    U1<"velocity_valid"> vel_cov_valid{};
     std::array<std::uint8_t, 9> reserved{};
-    std::array<float, 6> pos_cov{};  ///< m²
-    std::array<float, 6> vel_cov{};  ///< m²/s²
+    R4<"position_m2", 6> pos_cov{};
+    R4<"velocity_m2ps2", 6> vel_cov{};
 };
 
 /// NAV-EOE: the last NAV message of an epoch.
 struct NavEoe {
     static constexpr UbxMessageId message_id{0x01, 0x61};
-    std::uint32_t i_tow = 0;  ///< ms, GPS time of week of the epoch
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
 };
 
 /// NAV-VELECEF: velocity in the Earth-fixed frame (RECEIVER.md 3.1).
 struct NavVelecef {
     static constexpr UbxMessageId message_id{0x01, 0x11};
-    std::uint32_t i_tow = 0;               ///< ms, GPS time of week of the epoch
-    std::array<std::int32_t, 3> ecef_v{};  ///< cm/s
-    std::uint32_t s_acc = 0;               ///< cm/s
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    I4<"ecef_v_mps*1e-2", 3> ecef_v{};
+    U4<"speed_acc_mps*1e-2"> s_acc{};
 };
 
 /// NAV-HPPOSECEF: position in the Earth-fixed frame with more digits (RECEIVER.md 3.1).
 struct NavHpposecef {
     static constexpr UbxMessageId message_id{0x01, 0x13};
-    std::uint8_t version = 0;  ///< 0
+    U1<"version"> version{};  ///< 0
     std::array<std::uint8_t, 3> reserved{};
-    std::uint32_t i_tow = 0;               ///< ms, GPS time of week of the epoch
-    std::array<std::int32_t, 3> ecef{};    ///< cm
-    std::array<std::int8_t, 3> ecef_hp{};  ///< 0.1 mm, to add
-    std::uint8_t flags = 0;                ///< bit 0: invalid
-    std::uint32_t p_acc = 0;               ///< 0.1 mm
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    I4<"ecef_m*1e-2", 3> ecef{};
+    I1<"ecef_hp_m*1e-4", 3> ecef_hp{};  ///< to add
+    U1<"flags"> flags{};                ///< bit 0: invalid
+    U4<"p_acc_m*1e-4"> p_acc{};
 };
 
 /// NAV-ODO: odometer (RECEIVER.md 3.1).
 struct NavOdo {
     static constexpr UbxMessageId message_id{0x01, 0x09};
-    std::uint8_t version = 0;  ///< 0
+    U1<"version"> version{};  ///< 0
     std::array<std::uint8_t, 3> reserved{};
-    std::uint32_t i_tow = 0;           ///< ms, GPS time of week of the epoch
-    std::uint32_t distance = 0;        ///< m since NAV-RESETODO
-    std::uint32_t total_distance = 0;  ///< m
-    std::uint32_t distance_std = 0;    ///< m, 1 σ
+    U4<"tow_s*1e-3"> i_tow{};     ///< GPS time of week of the epoch
+    U4<"distance_m"> distance{};  ///< since NAV-RESETODO
+    U4<"total_distance_m"> total_distance{};
+    U4<"distance_deviation_m"> distance_std{};  ///< 1 σ
 };
 
 /// NAV-EELL: horizontal error ellipse (M8 interface description).
 struct NavEell {
     static constexpr UbxMessageId message_id{0x01, 0x3D};
-    std::uint32_t i_tow = 0;   ///< ms, GPS time of week of the epoch
-    std::uint8_t version = 0;  ///< 0
+    U4<"tow_s*1e-3"> i_tow{};  ///< GPS time of week of the epoch
+    U1<"version"> version{};   ///< 0
     std::uint8_t reserved = 0;
-    std::uint16_t orient = 0;  ///< 0.01 deg of the major axis from true north
-    std::uint32_t major = 0;   ///< mm
-    std::uint32_t minor = 0;   ///< mm
+    U2<"orientation_deg*1e-2"> orient{};  ///< of the major axis from true north
+    U4<"major_m*1e-3"> major{};
+    U4<"minor_m*1e-3"> minor{};
 };
 
 }  // namespace skyloop::inline receiver

@@ -7,7 +7,7 @@
 
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 #include "run/fault/known_names.hpp"
 
 namespace skyloop::inline run {

@@ -8,7 +8,7 @@
 
 #include "base/core/words.hpp"
 #include "firmware/septentrio/settings.hpp"
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 
 namespace skyloop::inline run {
 namespace {
@@ -123,11 +123,11 @@ bool may_be_numbered(std::string_view name) {
 
 // What a dialogue calls by a name of its own: sentences by their formatters. Those of other classes are told by their
 // addresses: PUBX,00 and not PUBX-00.
-bool is_called_so(const UbxMessageName& message) { return message.id.message_class <= 0xF0; }
+bool is_called_so(const UbxMessage& message) { return message.id.message_class <= 0xF0; }
 
 std::vector<std::string_view> called_messages() {
     std::vector<std::string_view> names(std::begin(more_sentences), std::end(more_sentences));
-    for (const UbxMessageName& message : ubx_message_names())
+    for (const UbxMessage& message : ubx_messages())
         if (is_called_so(message)) names.push_back(message.name);
     return names;
 }

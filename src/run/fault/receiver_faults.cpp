@@ -20,7 +20,7 @@
 #include "firmware/core/firmware_faults.hpp"
 #include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 #include "run/fault/parameters.hpp"
 
 namespace skyloop::inline run {

@@ -200,7 +200,7 @@ MavlinkHilGps mavlink_hil_gps(const firmware::NavigationState& state, HilGpsAccu
     const Fix& fix = state.epoch.fix;
     MavlinkHilGps message;
     message.time_usec = known.time_usec;
-    message.fix_type = std::min(known.fix_type, fix_type_3d);
+    message.fix_type = std::min(known.fix_type.raw, fix_type_3d);
     message.satellites_visible = known.satellites_visible;
     message.lat = known.lat;
     message.lon = known.lon;

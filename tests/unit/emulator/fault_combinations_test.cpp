@@ -136,7 +136,7 @@ void expect_sound_stream(const BenchRun& run, const Overlay& overlay) {
                 {"week_order", "week_rollover", "time_step", "time_backwards", "time_drift", "reordered_epochs"}))
             continue;
         constexpr double week_ms = 604'800'000;
-        const double tow = pvt->i_tow < 300'000'000 ? pvt->i_tow + week_ms : pvt->i_tow;
+        const double tow = pvt->i_tow < 300'000'000 ? pvt->i_tow + week_ms : pvt->i_tow.raw;
         EXPECT_GE(tow, last_tow) << message.at_s << " s";
         last_tow = tow;
     }

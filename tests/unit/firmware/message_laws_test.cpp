@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 #include "support/ubx_message_types.hpp"
 #include "ubx_reports.hpp"
 
@@ -27,7 +27,7 @@ TEST(EveryMessage, ReadsBackAsItWasMade) {
         cold.start_cold(7);
         lost.lose_fix();
         int made = 0;
-        for (const UbxMessageName& message : ubx_message_names()) {
+        for (const UbxMessage& message : ubx_messages()) {
             if (!is_made_here(message.id)) continue;
             for (const UbxReport* report : {&fixed, &cold, &lost}) {
                 for (const Bytes& bytes : report->frames(message.id)) {

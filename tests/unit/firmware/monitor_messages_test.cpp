@@ -21,8 +21,8 @@ TEST(MonVerMessage, FillsTextsUpWithZeros) {
     EXPECT_STREQ(m.hw_version.data(), "00080000");
     EXPECT_EQ(m.hw_version[9], '\0');
     ASSERT_EQ(m.extensions.size(), 2u);
-    EXPECT_STREQ(m.extensions[1].characters.data(), "PROTVER=18.00");
-    EXPECT_EQ(m.extensions[1].characters[29], '\0');
+    EXPECT_STREQ(m.extensions[1].data(), "PROTVER=18.00");
+    EXPECT_EQ(m.extensions[1][29], '\0');
 }
 
 TEST(MonGnssMessage, SaysWhatIsOn) {

@@ -260,7 +260,8 @@ TEST(NavSolutionMessages, HaveTheBytesOfCapturedReceiversWithoutAnyFix) {
     EXPECT_EQ(f9.report<NavVelned>().s_acc, 2000u);
     EXPECT_EQ(f9.report<NavVelned>().c_acc, 18000000u);
     const auto dop = f9.report<NavDop>();
-    for (const std::uint16_t value : {dop.g_dop, dop.p_dop, dop.t_dop, dop.v_dop, dop.h_dop, dop.n_dop, dop.e_dop})
+    for (const std::uint16_t value :
+         {dop.g_dop.raw, dop.p_dop.raw, dop.t_dop.raw, dop.v_dop.raw, dop.h_dop.raw, dop.n_dop.raw, dop.e_dop.raw})
         EXPECT_EQ(value, 9999);
     EXPECT_EQ(f9.report<NavStatus>().flags, 0x40);
     EXPECT_EQ(f9.report<NavStatus>().ttff, 0u);

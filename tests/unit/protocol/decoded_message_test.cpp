@@ -9,8 +9,8 @@
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/sbf_blocks.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 #include "receiver/protocol/ubx_mon.hpp"
-#include "receiver/protocol/ubx_names.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
 
@@ -22,40 +22,6 @@ std::string json_of(StreamKind kind, const Bytes& bytes) { return json_line(deco
 std::string sentence_text(const std::string& body) {
     Sentence sentence(body);
     return text_of(StreamKind::nmea, to_bytes(sentence.finish()));
-}
-
-TEST(DecodedMessage, EveryUbxListingHasAsManyNamesAsFields) {
-    for (const UbxListing& listing : ubx_listings())
-        EXPECT_TRUE(listing.names_fit()) << ubx_message_name(listing.id).value_or("?");
-}
-
-template <class Message>
-bool names_fit() {
-    FieldLister lister(Message::field_names);
-    const Message message;
-    walk_fields(message, lister);
-    return lister.names_fit();
-}
-
-TEST(DecodedMessage, EveryOtherMessageHasAsManyNamesAsFields) {
-    EXPECT_TRUE(names_fit<MspSensorGps>());
-    EXPECT_TRUE(names_fit<MspSetRawGps>());
-    EXPECT_TRUE(names_fit<MavlinkHeartbeat>());
-    EXPECT_TRUE(names_fit<MavlinkGpsInput>());
-    EXPECT_TRUE(names_fit<MavlinkGpsRawInt>());
-    EXPECT_TRUE(names_fit<MavlinkGpsRtcmData>());
-    EXPECT_TRUE(names_fit<MavlinkCommandLong>());
-    EXPECT_TRUE(names_fit<MavlinkCommandInt>());
-    EXPECT_TRUE(names_fit<MavlinkCommandAck>());
-    EXPECT_TRUE(names_fit<SbfPosCovGeodetic>());
-    EXPECT_TRUE(names_fit<SbfVelCovGeodetic>());
-    EXPECT_TRUE(names_fit<SbfDop>());
-    EXPECT_TRUE(names_fit<SbfAttEuler>());
-    SbfPvtGeodetic pvt;
-    pvt.accuracy.emplace();
-    FieldLister lister(SbfPvtGeodetic::field_names);
-    walk_fields(std::as_const(pvt), lister);
-    EXPECT_TRUE(lister.names_fit());
 }
 
 TEST(DecodedMessage, NumbersHaveTheirScaleAndExactlyTheirDigits) {
@@ -85,7 +51,7 @@ TEST(DecodedMessage, ListsAndTextsAreReadable) {
     MonVer version;
     std::copy_n("ROM 3.01", 8, version.sw_version.begin());
     version.extensions.resize(2);
-    std::copy_n("PROTVER=18.00", 13, version.extensions[1].characters.begin());
+    std::copy_n("PROTVER=18.00", 13, version.extensions[1].begin());
     EXPECT_EQ(text_of(StreamKind::ubx, encode_frame(version)),
               "UBX MON-VER software=\"ROM 3.01\" hardware=\"\" extensions=[\"\" \"PROTVER=18.00\"]");
 }
@@ -187,22 +153,6 @@ TEST(DecodedMessage, SinglePrecisionIsNotDressedUp) {
 
 TEST(DecodedMessage, JsonStringsAreAlwaysAscii) {
     EXPECT_EQ(json_string("a\"b\\c\n\xE9"), "\"a\\\"b\\\\c\\u000a\\u00e9\"");
-}
-
-TEST(DecodedMessage, NamesOfFieldsAreUnderstood) {
-    std::string_view names = "a -b*1e-7!255 c[x y*2^-3] d";
-    EXPECT_EQ(next_field_name(names).name, "a");
-    const FieldName b = next_field_name(names);
-    EXPECT_TRUE(b.hidden);
-    EXPECT_EQ(b.name, "b");
-    EXPECT_EQ(b.decimal_digits, 7);
-    EXPECT_EQ(b.absent, 255);
-    FieldName c = next_field_name(names);
-    EXPECT_EQ(c.items, "x y*2^-3");
-    next_field_name(c.items);
-    EXPECT_EQ(next_field_name(c.items).binary_digits, 3);
-    EXPECT_EQ(next_field_name(names).name, "d");
-    EXPECT_EQ(next_field_name(names).name, "");
 }
 
 }  // namespace

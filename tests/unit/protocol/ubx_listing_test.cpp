@@ -3,8 +3,7 @@
 #include <algorithm>
 
 #include "receiver/protocol/decoded_message.hpp"
-#include "receiver/protocol/field_lister.hpp"
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 #include "support/ubx_message_types.hpp"
 
 namespace skyloop {
@@ -22,11 +21,10 @@ void expect_listed(Message message) {
     if constexpr (requires { message.protocols.resize(1); }) message.protocols.resize(1);
     if constexpr (requires { message.unique_id.resize(5); }) message.unique_id.resize(5);
     const Bytes payload = encode_payload(message);
-    const auto listings = ubx_listings();
-    EXPECT_TRUE(std::any_of(
-        listings.begin(), listings.end(),
-        [&](const UbxListing& listing) { return listing.id == Message::message_id && listing.list(payload); }))
-        << to_string(Message::message_id) << " of " << payload.size() << " bytes";
+    const auto known = std::ranges::find(ubx_messages(), Message::message_id, &UbxMessage::id);
+    ASSERT_NE(known, ubx_messages().end()) << to_string(Message::message_id);
+    ASSERT_NE(known->list, nullptr) << known->name;
+    EXPECT_TRUE(known->list(payload)) << known->name << " of " << payload.size() << " bytes";
 }
 
 TEST(UbxListing, EveryMessageThatLeavesAReceiverHasOne) {
@@ -67,6 +65,9 @@ TEST(UbxListing, ScalesNeedNotBePowersOfTen) {
     EXPECT_NE(text.find("gps_tow_acc_ms=1.5 "), text.npos) << text;
     EXPECT_NE(text.find("doppler_mps=-0.12 doppler_hz=1.4 "), text.npos) << text;
     EXPECT_NE(text.find("code_phase_ms=0.5 "), text.npos) << text;
+    RxmCor correction;
+    correction.ebno = 37;
+    EXPECT_NE(listing_of(correction).find(" ebno_db=4.625 "), text.npos) << listing_of(correction);
 }
 
 TEST(UbxListing, SettingsOfTheReferenceStationAndTheSentences) {

@@ -5,7 +5,7 @@
 
 #include "base/core/files.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 #include "support/oracle_table.hpp"
 #include "support/ubx_message_types.hpp"
 

@@ -1,4 +1,4 @@
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ TEST(UbxNames, LeadBothWays) {
     EXPECT_EQ(to_string(UbxMessageId{0x01, 0x35}), "NAV-SAT");
     EXPECT_EQ(to_string(UbxMessageId{0xAB, 0x0C}), "AB-0C");
     std::set<std::string_view> seen;
-    for (const UbxMessageName& message : ubx_message_names()) {
+    for (const UbxMessage& message : ubx_messages()) {
         EXPECT_EQ(ubx_message_name(message.id), message.name);
         EXPECT_EQ(ubx_message_from_name(message.name), message.id);
         EXPECT_TRUE(seen.insert(message.name).second) << message.name;

@@ -187,7 +187,8 @@ ConfigOutcome legacy_gnss(const LegacyContext& context, ByteSpan payload) {
     if (!merge_systems(wanted, set->systems)) return legacy_refused();
     // 255 stands for all, and more than there are cannot be used.
     const std::uint8_t available = context.board.gnss_channels_used;
-    wanted.num_trk_ch_use = set->num_trk_ch_use == all_channels ? available : std::min(set->num_trk_ch_use, available);
+    wanted.num_trk_ch_use =
+        set->num_trk_ch_use == all_channels ? available : std::min(set->num_trk_ch_use.raw, available);
     if (!leaves_major(wanted) || (shares && !channels_suffice(wanted))) return legacy_refused();
     LegacyChanges changes(context);
     if (!put_systems(context, changes, set->systems)) return legacy_refused();

@@ -139,7 +139,7 @@ ConfigOutcome legacy_rate(const LegacyContext& context, ByteSpan payload) {
     LegacyChanges changes(context);
     // Too short a period is taken, clamped and read back so (RECEIVER.md 2.6).
     const auto least = static_cast<std::uint16_t>(context.board.least_measurement_period_ms);
-    changes.put(key::rate_meas, std::max(set->meas_rate, least));
+    changes.put(key::rate_meas, std::max(set->meas_rate.raw, least));
     changes.put(key::rate_nav, set->nav_rate);
     changes.put(key::rate_timeref, set->time_ref);
     return changes.apply();

@@ -103,10 +103,10 @@ bool put_uart(LegacyChanges& changes, PortId port, const CfgPrtItem& item) {
 
 bool put_port(const LegacyContext& context, LegacyChanges& changes, const CfgPrtItem& item) {
     if (!has_port(context.board, item.port_id)) return false;
-    const auto port = static_cast<PortId>(item.port_id);
+    const auto port = static_cast<PortId>(item.port_id.raw);
     if (is_uart(port)) {
         const auto& bauds = context.board.bauds;
-        if (item.baud_rate == 0 || (!bauds.empty() && std::ranges::find(bauds, item.baud_rate) == bauds.end()))
+        if (item.baud_rate == 0 || (!bauds.empty() && std::ranges::find(bauds, item.baud_rate.raw) == bauds.end()))
             return false;
         if (!put_uart(changes, port, item)) return false;
     } else if (port == PortId::i2c) {
@@ -302,7 +302,7 @@ ConfigOutcome poll_nmea(const LegacyContext& context) {
 /// False for a version of NMEA that no receiver has.
 bool put_core(LegacyChanges& changes, const CfgNmeaCore& core) {
     const auto* const version =
-        std::ranges::find(numbered_nmea_versions, core.nmea_version, &NumberedNmeaVersion::wire);
+        std::ranges::find(numbered_nmea_versions, core.nmea_version.raw, &NumberedNmeaVersion::wire);
     if (version == std::end(numbered_nmea_versions)) return false;
     changes.put_bits(nmea_filter, core.filter);
     changes.put(key::nmea_protver, version->item);

@@ -40,10 +40,14 @@ public:
         else
             put_raw(key, static_cast<std::make_unsigned_t<T>>(value));
     }
+    template <class Raw>
+    void put(std::uint32_t key, const RawNumber<Raw>& field) {
+        put(key, field.raw);
+    }
     void put_bits(std::span<const BitKey> keys, std::uint32_t bits);
     /// These two under the names that LegacyFields has as well.
-    template <std::integral T>
-    void link(std::uint32_t key, const T& field) {
+    template <class Field>
+    void link(std::uint32_t key, const Field& field) {
         put(key, field);
     }
     void link(std::span<const BitKey> keys, std::uint32_t bits) { put_bits(keys, bits); }
@@ -85,9 +89,13 @@ public:
     void link(std::uint32_t key, T& field) {
         field = in_force<T>(context_, key);
     }
-    template <std::unsigned_integral T>
-    void link(std::span<const BitKey> keys, T& field) {
-        field = static_cast<T>(bits_in_force(context_, keys));
+    template <class Raw>
+    void link(std::uint32_t key, RawNumber<Raw>& field) {
+        link(key, field.raw);
+    }
+    template <class Raw>
+    void link(std::span<const BitKey> keys, RawNumber<Raw>& field) {
+        field.raw = static_cast<Raw>(bits_in_force(context_, keys));
     }
 
 private:

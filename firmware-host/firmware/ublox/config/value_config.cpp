@@ -98,7 +98,7 @@ ConfigOutcome ValueConfig::valset(ByteSpan payload) {
         if (!is_settable(pair.key, pair.value)) return cancel(), refused();
         change.items[pair.key] = cut_to_size(pair.key, pair.value);
     }
-    return take(message->version == 0 ? std::uint8_t{no_transaction} : message->transaction, std::move(change));
+    return take(message->version == 0 ? std::uint8_t{no_transaction} : message->transaction.raw, std::move(change));
 }
 
 ConfigOutcome ValueConfig::valdel(ByteSpan payload) {
@@ -115,7 +115,7 @@ ConfigOutcome ValueConfig::valdel(ByteSpan payload) {
         for (const std::uint32_t item : items)
             change.items[item] = 0;
     }
-    return take(message->version == 0 ? std::uint8_t{no_transaction} : message->transaction, std::move(change));
+    return take(message->version == 0 ? std::uint8_t{no_transaction} : message->transaction.raw, std::move(change));
 }
 
 ConfigOutcome ValueConfig::take(std::uint8_t transaction, Change change) {

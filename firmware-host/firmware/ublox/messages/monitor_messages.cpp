@@ -63,8 +63,8 @@ MonSys system_load(const ReportContext& context) {
     m.mem_usage = 8;
     m.mem_usage_max = 19;
     for (const PortStatus& port : context.ports) {
-        m.io_usage = std::max(m.io_usage, field<std::uint8_t>(port.usage_percent));
-        m.io_usage_max = std::max(m.io_usage_max, field<std::uint8_t>(port.peak_usage_percent));
+        m.io_usage = std::max(m.io_usage.raw, field<std::uint8_t>(port.usage_percent));
+        m.io_usage_max = std::max(m.io_usage_max.raw, field<std::uint8_t>(port.peak_usage_percent));
     }
     m.run_time = field<std::uint32_t>(std::floor(context.state.since_boot.value()));
     m.temp_value = 28;
@@ -162,8 +162,8 @@ MonTxbuf transmit_buffers(const ReportContext& context) {
         m.pending[slot] = pending_field(port);
         m.usage[slot] = field<std::uint8_t>(port.usage_percent);
         m.peak_usage[slot] = field<std::uint8_t>(port.peak_usage_percent);
-        m.t_usage = std::max(m.t_usage, m.usage[slot]);
-        m.t_peak_usage = std::max(m.t_peak_usage, m.peak_usage[slot]);
+        m.t_usage = std::max(m.t_usage.raw, m.usage[slot]);
+        m.t_peak_usage = std::max(m.t_peak_usage.raw, m.peak_usage[slot]);
         if (port.transmit_full) m.errors = static_cast<std::uint8_t>(m.errors | 1u << slot | 0x80);
     }
     return m;

@@ -110,7 +110,7 @@ NavPvt navigation_pvt(const ReportContext& context) {
     pvt.flags3 = static_cast<std::uint16_t>((invalid ? 1 : 0) | correction_age_code(state.corrections.age) << 1);
     if (context.board.identity.generation <= newest_without_vehicle) return pvt;
     pvt.reserved = pvt_reserved;
-    pvt.vehicle = NavPvtVehicle{pvt.head_mot, 0, 0};
+    pvt.vehicle = NavPvtVehicle{pvt.head_mot.raw, 0, 0};
     return pvt;
 }
 

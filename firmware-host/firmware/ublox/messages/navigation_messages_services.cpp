@@ -52,7 +52,7 @@ NavCov solution_covariance(const ReportContext& context) {
     if (!estimates_known(context.state)) return m;
     put_round_covariance(fix, m);
     if (fix.type == FixType::time_only && base_place(context.config.place, context.state.survey)) {
-        m.vel_cov = {};
+        m.vel_cov.fill(0);
         return m;
     }
     const std::optional<ErrorEllipse> ellipse = error_ellipse(fix);

@@ -160,7 +160,7 @@ NavTimels time_leap_seconds(const ReportContext& context) {
     m.src_of_curr_ls = from_firmware;
     if (!context.state.time.leap_seconds) return m;
     m.src_of_curr_ls = leap_source_code(context);
-    m.src_of_ls_change = m.src_of_curr_ls == glonass_difference ? change_from_glonass : m.src_of_curr_ls;
+    m.src_of_ls_change = m.src_of_curr_ls == glonass_difference ? change_from_glonass : m.src_of_curr_ls.raw;
     m.valid = 3;
     const auto& own = reported.leap_event;
     if (own)
