@@ -172,7 +172,7 @@ struct BoardProfile {
     std::vector<std::string> aliases;  ///< names of modules that mean this board, too
     std::vector<std::string> sources;  ///< of what its file says, for people
     std::vector<std::string> files;    ///< its own, and those of the boards that it extends, the nearest first
-    MakerKind personality = MakerKind::mute;
+    MakerKind maker = MakerKind::mute;
     Identity identity;
     Timing timing;
     Quirks quirks;

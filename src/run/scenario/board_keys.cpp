@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 
+#include "firmware/makers.hpp"
 #include "firmware/septentrio/settings.hpp"
 #include "firmware/ublox/config/config_handler.hpp"
 
@@ -239,6 +240,14 @@ void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
     read_one_of(nmea, "qzss_talker", qzss_talkers, style.qzss_talker);
 }
 
+void read_maker(TableReader& top, MakerKind& maker) {
+    std::vector<std::string_view> names;
+    for (const firmware::MakerRow& row : firmware::maker_rows())
+        names.push_back(row.name);
+    const auto index = top.choice("personality", names, {}, names.at(static_cast<std::size_t>(maker)));
+    if (index) maker = static_cast<MakerKind>(*index);
+}
+
 }  // namespace
 
 std::optional<Bytes> bytes_of_hex(std::string_view text) {
@@ -264,16 +273,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     top.text("description", board.description);
     read_aliases(top, board.aliases);
     top.texts("sources", board.sources);
-    top.word("personality",
-             {{"mute", MakerKind::mute},
-              {"ublox", MakerKind::ublox},
-              {"mtk", MakerKind::mtk},
-              {"airoha", MakerKind::airoha},
-              {"msp", MakerKind::msp},
-              {"msp-v1", MakerKind::msp_v1},
-              {"mavlink", MakerKind::mavlink},
-              {"sbf", MakerKind::sbf}},
-             board.maker);
+    read_maker(top, board.maker);
     top.table("identity", [&](TableReader& t) { read_board_identity(t, board.identity); });
     top.table("timing", [&](TableReader& t) { read_board_timing(t, board.timing); });
     top.table("corrections", [&](TableReader& t) { read_board_corrections(t, board.corrections); });

@@ -12,7 +12,7 @@
 #include "detail/board_parents.hpp"
 #include "detail/scenario_keys.hpp"
 #include "detail/table_reader.hpp"
-#include "firmware/config/config_handler.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "run/scenario/board_files.hpp"
 
 namespace skyloop::inline run {
@@ -225,7 +225,7 @@ Result<Json> board_listing(std::string_view name, std::span<const std::filesyste
     static_cast<void>(read_toml(
         *text, file.string(), [](TableReader&) {}, list));
     const firmware::ConfigValues factory = firmware::factory_config(*board);
-    const bool is_ublox = board->personality == firmware::Personality::ublox;
+    const bool is_ublox = board->maker == firmware::MakerKind::ublox;
     if (is_ublox || !board->sentences.empty()) listing["messages"] = messages_of(*board, factory);
     if (is_ublox) listing["items"] = items_of(*board, factory);
     return listing;
