@@ -87,6 +87,11 @@ public:
     void restart(SeptentrioTarget& to);
     /// All settings are as at the factory.
     void forget(SeptentrioTarget& to);
+    /// The configuration of the next start as far as it is not the factory's: a line "SBFOutput, Stream1, COM1, …"
+    /// each.
+    [[nodiscard]] std::string boot_text() const;
+    /// Takes it, and begins with it. Fails with `input`, naming the line.
+    Result<void> load(const std::string& text, const std::string& name, SeptentrioTarget& to);
     /// Takes an epoch in before what is due is made from it.
     void follow(const NavigationState& state) { follow_epoch(state_, board_, state); }
     [[nodiscard]] const SeptentrioState& state() const { return state_; }

@@ -65,8 +65,8 @@ void SeptentrioMaker::set_speed(std::uint32_t baud) {
 }
 
 Result<void> SeptentrioMaker::restore(const std::string& text, const std::string& name) {
-    if (text.find_first_not_of(" \t\r\n") == std::string::npos) return {};
-    return fail(ErrorCode::input, name + ":1: found settings; expected none: " + board().name + " keeps none");
+    ++revision_;
+    return console_.load(text, name, now_);
 }
 
 std::unique_ptr<Maker> make_septentrio(const BoardProfile& board, const ReceiverOptions& options) {

@@ -23,7 +23,7 @@ public:
     void forget_settings() override;
     void set_speed(std::uint32_t baud) override;
     [[nodiscard]] bool takes_speed(std::uint32_t baud) const override { return takes_baud(board(), baud); }
-    [[nodiscard]] std::string stored_text() const override { return {}; }
+    [[nodiscard]] std::string stored_text() const override { return console_.boot_text(); }
     Result<void> restore(const std::string& text, const std::string& name) override;
 
 private:

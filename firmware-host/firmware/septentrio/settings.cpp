@@ -309,4 +309,9 @@ SettingAnswer SeptentrioSettings::get(const SettingGroup& group, const std::vect
     return answer;
 }
 
+const SettingGroup& setting_group(std::string_view name) {
+    return *std::find_if(setting_groups().begin(), setting_groups().end(),
+                         [&](const SettingGroup& group) { return group.name == name; });
+}
+
 }  // namespace skyloop::firmware

@@ -31,6 +31,8 @@ struct SettingGroup {
 };
 /// All that is known here.
 std::span<const SettingGroup> setting_groups();
+/// One of them, which must be there.
+const SettingGroup& setting_group(std::string_view name);
 
 /// Words of one kind, in the maker's spelling.
 enum class WordKind {

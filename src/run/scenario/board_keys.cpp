@@ -248,6 +248,17 @@ void read_maker(TableReader& top, MakerKind& maker) {
     if (index) maker = static_cast<MakerKind>(*index);
 }
 
+// Tables that are one maker's alone.
+void refuse_tables_of_others(TableReader& top, MakerKind maker) {
+    const auto refuse = [&](std::string_view table, MakerKind owner, std::string_view what) {
+        if (maker != owner && !top.recording() && top.has(table))
+            top.mistake(table, fmt::format("has no effect: only receivers of the personality \"{}\" have {}",
+                                           firmware::maker_row(owner).name, what));
+    };
+    refuse("config", MakerKind::ublox, "configuration items");
+    refuse("sbf", MakerKind::sbf, "streams of blocks");
+}
+
 }  // namespace
 
 std::optional<Bytes> bytes_of_hex(std::string_view text) {
@@ -274,6 +285,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     read_aliases(top, board.aliases);
     top.texts("sources", board.sources);
     read_maker(top, board.maker);
+    refuse_tables_of_others(top, board.maker);
     top.table("identity", [&](TableReader& t) { read_board_identity(t, board.identity); });
     top.table("timing", [&](TableReader& t) { read_board_timing(t, board.timing); });
     top.table("corrections", [&](TableReader& t) { read_board_corrections(t, board.corrections); });

@@ -288,6 +288,23 @@ TEST_F(Console, StartsAgainAsSaved) {
     EXPECT_EQ(outcome_.reset->forgotten.kind(), StartKind::cold);
 }
 
+TEST_F(Console, OutlivesTheProcessAsSaved) {
+    say("sem,PVT,20");
+    say("sso,Stream1,COM1,DOP,sec1");
+    EXPECT_EQ(console_.boot_text(), "") << "nothing is saved yet";
+    say("eccf, Current, Boot");
+    SeptentrioConsole next(board_, start_);
+    SeptentrioTarget target = start_;
+    ASSERT_TRUE(next.load(console_.boot_text(), "state", target)) << console_.boot_text();
+    EXPECT_EQ(next.boot_text(), console_.boot_text());
+    EXPECT_DOUBLE_EQ(target.config.elevation_mask.deg(), 20);
+    EXPECT_EQ(target.config.settings.navigation_period, target_.config.settings.navigation_period);
+    EXPECT_EQ(next.load("\nTea, 1\n", "state", target).error().message, "state:2: 'Tea' is no setting of sample");
+    EXPECT_EQ(next.load("SBFOutput, Stream1, COM1, Tea, sec1\n", "state", target).error().message,
+              "state:1: SBFOutput: Argument 'Messages' is invalid!");
+    EXPECT_DOUBLE_EQ(target.config.elevation_mask.deg(), 20) << "nothing of it is taken";
+}
+
 TEST(SilentConsole, SendsNothingUntilItIsToldAndAfterItsFactorySettings) {
     const BoardProfile board = septentrio_board();
     SeptentrioTarget target = SeptentrioTarget::at_start(board, {});

@@ -49,8 +49,7 @@ public:
             step();
         return step();
     }
-
-    [[nodiscard]] const BoardProfile& board() const { return board_; }
+    void adopt() { tracker_.adopt(receiver_config(store_, board_)); }
 
 private:
     BoardProfile board_;
@@ -544,12 +543,12 @@ TEST(StateTracker, SurveysAnewAfterTheModeWasOff) {
     survey_in(t.store(), 3, 1'000'000);
     EXPECT_TRUE(t.steps(10).survey->done());
     survey_in(t.store(), 3, 1'000'000);
-    t.tracker().adopt(receiver_config(t.store(), t.board()));
+    t.adopt();
     EXPECT_TRUE(t.step().survey->done()) << "the same again";
     t.store().set(in_ram, key::tmode_mode, 0);
-    t.tracker().adopt(receiver_config(t.store(), t.board()));
+    t.adopt();
     survey_in(t.store(), 3, 1'000'000);
-    t.tracker().adopt(receiver_config(t.store(), t.board()));
+    t.adopt();
     EXPECT_EQ(t.step().survey->positions(), 1U);
     EXPECT_TRUE(t.steps(3).survey->done());
     survey_in(t.store(), 4, 1'000'000);

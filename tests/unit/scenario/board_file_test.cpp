@@ -159,6 +159,14 @@ TEST(BoardFile, AnEmptyFileIsADefaultReceiver) {
     EXPECT_TRUE(board->sentences.empty());
 }
 
+TEST(BoardFile, RefusesTablesOfOtherMakers) {
+    const auto refusal = [](const char* text) { return read_board(text, "mine.toml").error().message; };
+    EXPECT_THAT(refusal("personality = \"mtk\"\n[config]\n\"CFG-RATE-MEAS\" = 200\n"),
+                HasSubstr("mine.toml:2:1: config: has no effect: only receivers of the personality \"ublox\" have"));
+    EXPECT_THAT(refusal("personality = \"ublox\"\n[sbf]\nblocks = [\"DOP\"]\n"),
+                HasSubstr("\"sbf\" have streams of blocks"));
+}
+
 TEST(BoardFile, RefusesWithFileLineAndColumn) {
     EXPECT_EQ(board_refusal("[uart]\nbuad = 9600\n"),
               "boards/receivers/test.toml:2:1: uart.buad: unknown key; did you mean 'baud'?");
