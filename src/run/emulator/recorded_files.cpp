@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -119,9 +120,12 @@ void add_receiver_files(const Scenario& scenario, const DataFolders& data, std::
         if (receiver.trajectory) add_track_file(*receiver.trajectory, files);
         if (!receiver.state_file.empty()) files.push_back({receiver.state_file});
         if (!boards.insert(receiver.board).second) continue;
-        if (const auto board = find_board(receiver.board, board_folders(data)))
-            for (const std::string& file : board->files)
-                files.push_back({file});
+        // Its own, whether it can be read or not, and those of the boards that it extends.
+        const auto folders = board_folders(data);
+        if (const auto file = find_board_file(receiver.board, folders)) files.push_back({*file});
+        if (const auto board = find_board(receiver.board, folders))
+            for (const std::string& parent : std::span(board->files).subspan(1))
+                files.push_back({parent});
     }
 }
 

@@ -197,6 +197,20 @@ TEST(Assembly, TheDigestKnowsWhatTheFilesHoldThatARunReads) {
     }
 }
 
+TEST(Assembly, TheDigestKnowsWhatABoardExtends) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder / "child.toml") << "extends = \"parent.toml\"\n";
+    Scenario scenario = emulator_scenario("");
+    scenario.receivers[0].board = (folder / "child.toml").string();
+    const auto digest_with = [&](const char* parent) {
+        std::ofstream(folder / "parent.toml") << parent;
+        return scenario_digest(scenario, emulator_data(), virtual_mode().now);
+    };
+    const std::string digest = digest_with("[uart]\nbaud = 9600\n");
+    EXPECT_EQ(digest_with("[uart]\nbaud = 9600\n"), digest);
+    EXPECT_NE(digest_with("[uart]\nbaud = 38400\n"), digest);
+}
+
 TEST(Assembly, AWireDoesNotTakeThePlaceOfWhatTheRunReads) {
     const test::TemporaryFolder folder;
     const auto file = folder / "read.toml";
