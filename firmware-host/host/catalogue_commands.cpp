@@ -12,8 +12,8 @@
 #include "run/control/command_json.hpp"
 #include "run/fault/fault_kind.hpp"
 #include "run/scenario/board_files.hpp"
-#include "run/scenario/board_listing.hpp"
 #include "run/scenario/key_catalogue.hpp"
+#include "run/scenario/listed_board.hpp"
 #include "run_options.hpp"
 
 namespace skyloop::host {

@@ -1,4 +1,4 @@
-#include "run/scenario/board_listing.hpp"
+#include "run/scenario/listed_board.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ const std::vector<fs::path> listed_boards{fs::path(SKYLOOP_SOURCE_DIR) / "boards
 
 Json listed(const char* name) { return Json::parse(board_json(name, listed_boards).value()); }
 
-TEST(BoardListing, HasWhatTheBoardTakesFromOthersAndEveryDefault) {
+TEST(ListedBoard, HasWhatTheBoardTakesFromOthersAndEveryDefault) {
     const Json board = listed("ublox-f9p-hpg150");
     EXPECT_EQ(board.at("name"), "ublox-f9p-hpg150");
     EXPECT_EQ(board.at("files").size(), 2U);
@@ -42,7 +42,7 @@ TEST(BoardListing, HasWhatTheBoardTakesFromOthersAndEveryDefault) {
     EXPECT_FALSE(listed("ublox-m10").contains("usb")) << "it has none";
 }
 
-TEST(BoardListing, TellsRatesAndItemsThatDiffer) {
+TEST(ListedBoard, TellsRatesAndItemsThatDiffer) {
     const Json board = listed("ZED-F9P");
     const auto message = [&](std::string_view name) {
         for (const Json& each : board.at("messages"))
@@ -64,7 +64,7 @@ TEST(BoardListing, TellsRatesAndItemsThatDiffer) {
     EXPECT_FALSE(has(Json::parse(R"({"name": "CFG-RATE-NAV", "value": 1, "default": 1})")));
 }
 
-TEST(BoardListing, IsTablesForPeople) {
+TEST(ListedBoard, IsTablesForPeople) {
     const std::string text = board_text("ublox-max-m10s", listed_boards).value();
     EXPECT_THAT(text, HasSubstr("ublox-max-m10s\n  u-blox MAX-M10S,"));
     EXPECT_THAT(text, ContainsRegex("aliases +MAX-M10S\n"));
@@ -77,7 +77,7 @@ TEST(BoardListing, IsTablesForPeople) {
     EXPECT_THAT(board_text("msp-gps", listed_boards).value(), Not(HasSubstr("message")));
 }
 
-TEST(BoardListing, IsThereForEveryBoard) {
+TEST(ListedBoard, IsThereForEveryBoard) {
     for (const std::string& name : list_boards(listed_boards)) {
         const auto board = board_text(name, listed_boards);
         ASSERT_TRUE(board) << board.error().message;

@@ -1,4 +1,4 @@
-#include "run/scenario/board_listing.hpp"
+#include "run/scenario/listed_board.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
