@@ -86,7 +86,7 @@ ReportedTime reported_time(const ReportContext& context) {
     if (state.time.time)
         return {state.epoch.fix.time - clock_ahead(state), state.epoch.fix.leap_seconds, state.leap_event};
     const auto week = context.config.first_week;
-    const std::chrono::milliseconds running(field<std::uint32_t>(state.since_start.value() * 1e3));
+    const std::chrono::milliseconds running(nearest<std::uint32_t>(state.since_start.value() * 1e3));
     return {to_gps_time({week, Nanoseconds(0)}) + running, 0, std::nullopt};
 }
 
@@ -120,7 +120,7 @@ std::uint8_t utc_standard(const ReportContext& context) {
 
 std::uint32_t time_accuracy_ns(const NavigationState& state) {
     if (!state.time.time) return unknown_accuracy;
-    return field<std::uint32_t>(state.time.accuracy.value() * 1e9);
+    return nearest<std::uint32_t>(state.time.accuracy.value() * 1e9);
 }
 
 std::uint8_t fix_type_code(const Fix& fix) {
@@ -151,7 +151,7 @@ std::uint8_t gnss_id(Constellation constellation) {
 
 std::uint8_t sv_id(SatelliteId satellite) {
     const int number = satellite.constellation == Constellation::sbas ? satellite.number + 100 : satellite.number;
-    return field<std::uint8_t>(number);
+    return nearest<std::uint8_t>(number);
 }
 
 std::optional<std::uint8_t> ubx_single_number(SatelliteId satellite) {
@@ -186,7 +186,7 @@ std::uint8_t frequency_id(SatelliteId satellite, Signal signal, Hertz carrier) {
     if (satellite.constellation != Constellation::glonass) return 0;
     const double base = carrier_frequency(signal, 0).value();
     const double step = carrier_frequency(signal, 1).value() - base;
-    return field<std::uint8_t>(std::round((carrier.value() - base) / step) + 7);
+    return nearest<std::uint8_t>(std::round((carrier.value() - base) / step) + 7);
 }
 
 std::vector<Bytes> made_by(std::span<const UbxMaker> makers, UbxMessageId message, const ReportContext& context) {

@@ -20,28 +20,29 @@
 
 namespace skyloop::firmware {
 
-/// The nearest whole number that the field can hold; not a number is 0.
-template <class Integer>
-Integer field(double value) {
-    using Limits = std::numeric_limits<Integer>;
-    static_assert(sizeof(Integer) <= 4, "the limits of eight bytes are no doubles");
-    if (std::isnan(value)) return 0;
-    const double whole = std::round(value);
-    if (whole <= static_cast<double>(Limits::min())) return Limits::min();
-    if (whole >= static_cast<double>(Limits::max())) return Limits::max();
-    return static_cast<Integer>(whole);
-}
-
 /// A number, rounded as messages of lower precision have it, and what is left of it for a field of higher precision
 /// (NAV-HPPOSLLH and its like; 611 epochs of two captured ZED-F9P agree with their NAV-PVT).
 /// @param value in units of the rest; not a number is 0 @param parts of these make one unit of the whole: 100 or 10
 /// @param rest −parts/2 … parts/2
 void put_split(double value, int parts, std::int32_t& whole, std::int8_t& rest);
+/// The same for fields. @param value in their declared unit
+template <class Whole, class Rest>
+void put_split(double value, Whole& whole, Rest& rest) {
+    constexpr double parts = Rest::format.divisor / Whole::format.divisor;
+    put_split(value * Rest::format.divisor, static_cast<int>(parts), whole.raw, rest.raw);
+}
+template <class Whole, class Rest>
+void put_split(const Eigen::Vector3d& values, Whole& whole, Rest& rest) {
+    constexpr double parts = Rest::format.divisor / Whole::format.divisor;
+    for (std::size_t i = 0; i < 3; ++i)
+        put_split(values[static_cast<Eigen::Index>(i)] * Rest::format.divisor, static_cast<int>(parts), whole[i],
+                  rest[i]);
+}
 
 /// An accuracy that nobody knows.
 inline constexpr std::uint32_t unknown_accuracy = 0xFFFF'FFFF;
-/// A DOP that was not computed: 99.99.
-inline constexpr std::uint16_t unknown_dop = 9999;
+/// A DOP that was not computed.
+inline constexpr double unknown_dop = 99.99;
 
 /// An epoch in GPS time as messages say it: the nearest millisecond, and the rest.
 struct EpochTime {
@@ -58,7 +59,7 @@ std::int64_t reported_week(const NavigationState& state, const WeekAndTow& now);
 /// The same for a field.
 template <class Integer>
 Integer week_field(const NavigationState& state, const WeekAndTow& now) {
-    return field<Integer>(static_cast<double>(reported_week(state, now)));
+    return nearest<Integer>(static_cast<double>(reported_week(state, now)));
 }
 
 /// The instant of the epoch as the receiver believes it, and how far GPS time is ahead of UTC. The receiver's own clock
@@ -110,7 +111,7 @@ std::uint8_t signal_id(SatelliteId satellite, Signal signal, bool b1c_for_b1i = 
 std::uint8_t frequency_id(SatelliteId satellite, Signal signal, Hertz carrier);
 
 /// C/N0 as a field.
-inline std::uint8_t cn0_field(const std::optional<DbHz>& cn0) { return cn0 ? field<std::uint8_t>(cn0->value()) : 0; }
+inline std::uint8_t cn0_field(const std::optional<DbHz>& cn0) { return cn0 ? nearest<std::uint8_t>(cn0->value()) : 0; }
 
 /// Whether the satellite's place in the sky is known: the position is, and so is an orbit. A report leaves both angles
 /// at exactly zero where it does not know them.
@@ -173,7 +174,7 @@ inline std::uint8_t autopilot_fix_type(const NavigationState& state) {
     }
 }
 
-inline std::uint8_t reported_satellites(const Fix& fix) { return field<std::uint8_t>(fix.satellites_used()); }
+inline std::uint8_t reported_satellites(const Fix& fix) { return nearest<std::uint8_t>(fix.satellites_used()); }
 
 /// Metres above mean sea level.
 inline double msl_height(const Fix& fix) {

@@ -13,19 +13,19 @@ namespace {
 constexpr std::uint16_t ignore_alt = 1, ignore_hdop = 2, ignore_vdop = 4, every_ignore_flag = 0xFF;
 
 void put_msp_place(const Fix& fix, MspSensorGps& to) {
-    to.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
-    to.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
-    to.msl_altitude = field<std::int32_t>(msl_height(fix) * 100);
+    to.longitude.set(fix.position.longitude.deg());
+    to.latitude.set(fix.position.latitude.deg());
+    to.msl_altitude.set(msl_height(fix));
 }
 
 void put_msp_estimates(const Fix& fix, MspSensorGps& to) {
-    to.h_acc = field<std::uint16_t>(fix.horizontal_accuracy.value() * 100);
-    to.v_acc = field<std::uint16_t>(fix.vertical_accuracy.value() * 100);
-    to.speed_acc = field<std::uint16_t>(fix.speed_accuracy.value() * 100);
-    to.dop = fix.dop.hdop > 0 ? field<std::uint16_t>(fix.dop.hdop * 100) : std::uint16_t{9999};
-    to.vel_north = field<std::int32_t>(fix.velocity.north * 100);
-    to.vel_east = field<std::int32_t>(fix.velocity.east * 100);
-    to.vel_down = field<std::int32_t>(fix.velocity.down * 100);
+    to.h_acc.set(fix.horizontal_accuracy.value());
+    to.v_acc.set(fix.vertical_accuracy.value());
+    to.speed_acc.set(fix.speed_accuracy.value());
+    if (fix.dop.hdop > 0) to.dop.set(fix.dop.hdop);
+    to.vel_north.set(fix.velocity.north);
+    to.vel_east.set(fix.velocity.east);
+    to.vel_down.set(fix.velocity.down);
 }
 
 void put_msp_clock(const NavigationState& state, MspSensorGps& to) {
@@ -47,27 +47,27 @@ std::uint64_t posix_microseconds(const Fix& fix) {
 }
 
 void put_mavlink_place(const Fix& fix, MavlinkGpsInput& to) {
-    to.lat = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
-    to.lon = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
-    to.alt = static_cast<float>(msl_height(fix));
+    to.lat.set(fix.position.latitude.deg());
+    to.lon.set(fix.position.longitude.deg());
+    to.alt.set(msl_height(fix));
     to.ignore_flags &= static_cast<std::uint16_t>(~ignore_alt);
 }
 
 void put_mavlink_estimates(const Fix& fix, MavlinkGpsInput& to) {
     if (fix.dop.hdop > 0)
-        to.hdop = static_cast<float>(fix.dop.hdop);
+        to.hdop.set(fix.dop.hdop);
     else
         to.ignore_flags |= ignore_hdop;
     if (fix.dop.vdop > 0)
-        to.vdop = static_cast<float>(fix.dop.vdop);
+        to.vdop.set(fix.dop.vdop);
     else
         to.ignore_flags |= ignore_vdop;
-    to.vn = static_cast<float>(fix.velocity.north);
-    to.ve = static_cast<float>(fix.velocity.east);
-    to.vd = static_cast<float>(fix.velocity.down);
-    to.speed_accuracy = static_cast<float>(fix.speed_accuracy.value());
-    to.horiz_accuracy = static_cast<float>(fix.horizontal_accuracy.value());
-    to.vert_accuracy = static_cast<float>(fix.vertical_accuracy.value());
+    to.vn.set(fix.velocity.north);
+    to.ve.set(fix.velocity.east);
+    to.vd.set(fix.velocity.down);
+    to.speed_accuracy.set(fix.speed_accuracy.value());
+    to.horiz_accuracy.set(fix.horizontal_accuracy.value());
+    to.vert_accuracy.set(fix.vertical_accuracy.value());
 }
 
 }  // namespace
@@ -79,15 +79,14 @@ MspSensorGps msp_sensor_gps(const NavigationState& state) {
     if (has_solution(state)) message.fix_type = autopilot_fix_type(state);
     message.satellites = reported_satellites(fix);
     const WeekAndTow stamp = gps_stamp(state);
-    if (state.time.date) message.gps_week = field<std::uint16_t>(static_cast<double>(stamp.week));
+    if (state.time.date) message.gps_week.set(static_cast<double>(stamp.week));
     if (state.time.time) message.ms_tow = whole_milliseconds(stamp);
     if (state.time.time && state.time.date) put_msp_clock(state, message);
     if (has_place(state)) put_msp_place(fix, message);
     if (!has_solution(state)) return message;
     put_msp_estimates(fix, message);
-    if (state.course) message.course = field<std::uint16_t>(state.course->deg() * 100);
-    if (const auto attitude = pair_attitude(state))
-        message.true_yaw = field<std::uint16_t>(attitude->heading_deg * 100);
+    if (state.course) message.course.set(state.course->deg());
+    if (const auto attitude = pair_attitude(state)) message.true_yaw.set(attitude->heading_deg);
     return message;
 }
 
@@ -96,12 +95,12 @@ MspSetRawGps msp_set_raw_gps(const NavigationState& state) {
     MspSetRawGps message;
     message.satellites = reported_satellites(fix);
     if (!has_place(state)) return message;
-    message.latitude = field<std::int32_t>(fix.position.latitude.deg() * 1e7);
-    message.longitude = field<std::int32_t>(fix.position.longitude.deg() * 1e7);
-    message.altitude = field<std::uint16_t>(msl_height(fix));
+    message.latitude.set(fix.position.latitude.deg());
+    message.longitude.set(fix.position.longitude.deg());
+    message.altitude.set(msl_height(fix));
     if (!has_solution(state)) return message;
     message.fix = 1;
-    message.speed = field<std::uint16_t>(fix.speed.value() * 100);
+    message.speed.set(fix.speed.value());
     return message;
 }
 
@@ -111,7 +110,7 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     message.fix_type = autopilot_fix_type(state);
     message.satellites_visible = reported_satellites(fix);
     const WeekAndTow stamp = gps_stamp(state);
-    if (state.time.date) message.time_week = field<std::uint16_t>(static_cast<double>(stamp.week));
+    if (state.time.date) message.time_week.set(static_cast<double>(stamp.week));
     if (state.time.time) message.time_week_ms = whole_milliseconds(stamp);
     if (state.time.time && state.time.date) message.time_usec = posix_microseconds(fix);
     message.ignore_flags = every_ignore_flag;
@@ -120,8 +119,8 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     message.ignore_flags = 0;
     put_mavlink_estimates(fix, message);
     if (const auto attitude = pair_attitude(state)) {
-        const auto yaw = field<std::uint16_t>(attitude->heading_deg * 100);
-        message.yaw = yaw == 0 ? std::uint16_t{36000} : yaw;
+        message.yaw.set(attitude->heading_deg);
+        if (message.yaw == 0) message.yaw = 36000;
     }
     return message;
 }

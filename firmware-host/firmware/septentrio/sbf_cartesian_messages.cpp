@@ -78,9 +78,9 @@ SbfBaseVectorCart sbf_base_vector_cartesian(const NavigationState& state) {
             const Eigen::Vector3d speed =
                 along_axes(state, static_cast<double>(line.vel_east), static_cast<double>(line.vel_north),
                            static_cast<double>(line.vel_up));
-            base.vel_x = static_cast<float>(speed.x());
-            base.vel_y = static_cast<float>(speed.y());
-            base.vel_z = static_cast<float>(speed.z());
+            base.vel_x.set(speed.x());
+            base.vel_y.set(speed.y());
+            base.vel_z.set(speed.z());
         }
         base.azimuth = line.azimuth;
         base.elevation = line.elevation;
@@ -102,7 +102,7 @@ SbfSatVisibility sbf_visible_satellites(const NavigationState& state) {
         visible.svid = *svid;
         visible.freq_nr = sbf_frequency_number(satellite.id, state.epoch.observations);
         visible.azimuth = static_cast<std::uint16_t>(std::lround((satellite.azimuth.deg() + 360) * 100) % 36000);
-        visible.elevation = field<std::int16_t>(satellite.elevation.deg() * 100);
+        visible.elevation.set(satellite.elevation.deg());
         visible.known_by = satellite.has_ephemeris ? by_ephemeris : by_almanac;
         block.satellites.push_back(visible);
     }

@@ -122,7 +122,7 @@ SbfMeasuredSatellite measured_satellite(const SbfMeasuredSignals& signals, const
     satellite.svid = *sbf_svid(o.satellite);
     satellite.misc = static_cast<std::uint8_t>(millimetres >> 32);
     satellite.code_lsb = static_cast<std::uint32_t>(millimetres & 0xFFFFFFFF);
-    satellite.doppler = field<std::int32_t>(o.doppler->value() / 1e-4);
+    satellite.doppler.set(o.doppler->value());
     satellite.carrier_lsb = lower_part(phase);
     satellite.carrier_msb = static_cast<std::int8_t>(phase >> 16);
     satellite.cn0 = cn0_of(o);
@@ -133,17 +133,14 @@ SbfMeasuredSatellite measured_satellite(const SbfMeasuredSignals& signals, const
     return satellite;
 }
 
-// Clipped to the largest number that still means something.
-std::uint16_t variance(double deviation, double step) { return sbf_u2(deviation * deviation / step); }
-
 SbfSignalExtra signal_extra(const SbfMeasured& signal, const NavigationState& state,
                             const SbfMeasurementCounts& counts) {
     const Observation& o = *signal.observation;
     SbfSignalExtra extra;
     extra.rx_channel = sbf_channel_number(state, o.satellite);
     extra.type = signal.number;
-    extra.code_variance = variance(o.pseudorange_deviation.value(), 1e-4);
-    if (o.carrier_phase) extra.carrier_variance = variance(o.carrier_phase_deviation, 1e-6);
+    extra.code_variance.set(std::pow(o.pseudorange_deviation.value(), 2));
+    if (o.carrier_phase) extra.carrier_variance.set(std::pow(o.carrier_phase_deviation, 2));
     extra.lock_time = lock_seconds(o, 65534, 0xFFFF);
     extra.losses = counts.losses(o);
     extra.misc = static_cast<std::uint8_t>(fine_cn0(o) % 8);
@@ -195,7 +192,7 @@ SbfMeasExtra sbf_measurement_extra(const NavigationState& state, const SbfMeasur
             carrier += std::pow(signal.observation->carrier_phase_deviation, 2);
             doppler += std::pow(signal.observation->doppler_deviation.value(), 2);
         }
-    if (carrier > 0) block.doppler_var_factor = static_cast<float>(doppler / carrier);
+    if (carrier > 0) block.doppler_var_factor.set(doppler / carrier);
     return block;
 }
 

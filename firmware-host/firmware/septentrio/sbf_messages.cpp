@@ -93,20 +93,20 @@ void put_sbf_solution(const ReportContext& context, Block& to, SbfPvtAccuracy& a
     to.error = sbf_error(state);
     if (!has_solution(state)) return;
     const Fix& fix = state.epoch.fix;
-    to.undulation = static_cast<float>(fix.geoid_undulation.value());
-    if (state.course && fix.speed.value() >= 0.1) to.course = static_cast<float>(state.course->deg());
+    to.undulation.set(fix.geoid_undulation.value());
+    if (state.course && fix.speed.value() >= 0.1) to.course.set(state.course->deg());
     to.clock_bias = fix.clock_bias.value() / speed_of_light * 1e3;
-    to.clock_drift = static_cast<float>(fix.clock_drift.value() / speed_of_light * 1e6);
+    to.clock_drift.set(fix.clock_drift.value() / speed_of_light * 1e6);
     to.time_system = 0;
     to.datum = 0;
     to.num_sv = reported_satellites(fix);
     to.signal_info = sbf_signal_info(state);
-    if (state.corrections.age) to.mean_corr_age = sbf_u2(state.corrections.age->value() * 100);
-    if (state.corrections.station) to.reference_id = sbf_u2(*state.corrections.station);
+    if (state.corrections.age) to.mean_corr_age.set(state.corrections.age->value());
+    if (state.corrections.station) to.reference_id.set(*state.corrections.station);
     to.num_bases = state.corrections.state == CorrectionState::none ? 0 : 1;
-    accuracy.latency = sbf_u2(context.board.solution_latency.value() * 1e4);
-    accuracy.h_accuracy = sbf_u2(2 * fix.horizontal_accuracy.value() * 100);
-    accuracy.v_accuracy = sbf_u2(2 * fix.vertical_accuracy.value() * 100);
+    accuracy.latency.set(context.board.solution_latency.value());
+    accuracy.h_accuracy.set(2 * fix.horizontal_accuracy.value());
+    accuracy.v_accuracy.set(2 * fix.vertical_accuracy.value());
 }
 
 // Of east, north, up and clock the variances of north, east, up and clock, and the covariances in SBF's order.
@@ -135,7 +135,7 @@ SbfChannel sbf_channel(const SatelliteStatus& satellite, std::uint8_t svid, bool
     // Whether it rises is not known here.
     const unsigned degrees = static_cast<unsigned>(std::lround(satellite.azimuth.deg() + 360)) % 360u;
     channel.azimuth = static_cast<std::uint16_t>(degrees | 3u << 14);
-    channel.elevation = field<std::int8_t>(satellite.elevation.deg());
+    channel.elevation.set(satellite.elevation.deg());
     channel.health_status = status(!satellite.has_ephemeris ? 0 : satellite.healthy ? 1 : 3);
     channel.tracking_status = status(3);
     channel.pvt_status = status(solved && satellite.used ? 2 : satellite.has_ephemeris ? 0 : 1);
@@ -152,9 +152,9 @@ SbfPvtGeodetic sbf_pvt_geodetic(const ReportContext& context) {
     block.latitude = fix.position.latitude.rad();
     block.longitude = fix.position.longitude.rad();
     block.height = fix.position.height.above_ellipsoid.value();
-    block.vel_north = static_cast<float>(fix.velocity.north);
-    block.vel_east = static_cast<float>(fix.velocity.east);
-    block.vel_up = static_cast<float>(-fix.velocity.down);
+    block.vel_north.set(fix.velocity.north);
+    block.vel_east.set(fix.velocity.east);
+    block.vel_up.set(-fix.velocity.down);
     return block;
 }
 
@@ -169,9 +169,9 @@ SbfPvtCartesian sbf_pvt_cartesian(const ReportContext& context) {
     block.x = place.x();
     block.y = place.y();
     block.z = place.z();
-    block.vx = static_cast<float>(speed.x());
-    block.vy = static_cast<float>(speed.y());
-    block.vz = static_cast<float>(speed.z());
+    block.vx.set(speed.x());
+    block.vy.set(speed.y());
+    block.vz.set(speed.z());
     return block;
 }
 
@@ -207,10 +207,10 @@ SbfDop sbf_dop(const NavigationState& state) {
     if (!has_solution(state)) return block;
     const Fix& fix = state.epoch.fix;
     block.num_sv = reported_satellites(fix);
-    block.pdop = field<std::uint16_t>(fix.dop.pdop * 100);
-    block.tdop = field<std::uint16_t>(fix.dop.tdop * 100);
-    block.hdop = field<std::uint16_t>(fix.dop.hdop * 100);
-    block.vdop = field<std::uint16_t>(fix.dop.vdop * 100);
+    block.pdop.set(fix.dop.pdop);
+    block.tdop.set(fix.dop.tdop);
+    block.hdop.set(fix.dop.hdop);
+    block.vdop.set(fix.dop.vdop);
     return block;
 }
 
@@ -221,8 +221,8 @@ SbfAttEuler sbf_attitude(const NavigationState& state) {
     block.num_sv = reported_satellites(state.epoch.fix);
     block.error = 0;
     block.mode = attitude->fixed ? 2 : 1;
-    block.heading = static_cast<float>(attitude->heading_deg);
-    block.pitch = static_cast<float>(attitude->pitch_deg);
+    block.heading.set(attitude->heading_deg);
+    block.pitch.set(attitude->pitch_deg);
     return block;
 }
 
@@ -257,7 +257,7 @@ SbfChannelStatus sbf_channel_status(const NavigationState& state) {
 
 SbfReceiverStatus sbf_receiver_status(const NavigationState& state) {
     auto block = sbf_block<SbfReceiverStatus>(state);
-    block.up_time = field<std::uint32_t>(std::floor(state.since_start.value()));
+    block.up_time.set(std::floor(state.since_start.value()));
     block.rx_state = (state.monitors.antenna_power == 1 ? antenna_active : 0) | (state.time.date ? week_set : 0) |
                      (state.time.time ? tow_set : 0) | (has_solution(state) ? fine_time : 0) |
                      (state.corrections.come ? corrections_come : 0);

@@ -27,7 +27,7 @@ inline SbfTime sbf_time(const NavigationState& state) {
     const WeekAndTow stamp = gps_stamp(state);
     SbfTime time;
     if (state.time.time) time.tow = whole_milliseconds(stamp);
-    if (state.time.date) time.wnc = field<std::uint16_t>(static_cast<double>(stamp.week));
+    if (state.time.date) time.wnc = nearest<std::uint16_t>(static_cast<double>(stamp.week));
     return time;
 }
 
@@ -65,9 +65,6 @@ inline std::uint8_t sbf_error(const NavigationState& state) {
     if (!state.kind_forbidden) return measurements;
     return state.epoch.fix.type == FixType::rtk_float ? not_fixed : corrections;
 }
-
-/// Clipped to the largest number that still means something.
-inline std::uint16_t sbf_u2(double value) { return std::min(field<std::uint16_t>(value), std::uint16_t{65534}); }
 
 /// The number of a signal (section 4.1.10); nothing for one that has none below 31.
 std::optional<std::uint8_t> sbf_signal_number(Constellation constellation, Signal signal);

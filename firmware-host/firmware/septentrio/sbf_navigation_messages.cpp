@@ -20,7 +20,7 @@ constexpr double per_semicircle = 1 / std::numbers::pi;
 // The instant at which a message had been sent.
 SbfTime sent_at(GpsTime end) {
     const WeekAndTow stamp = gps_stamp(end);
-    return {whole_milliseconds(stamp), field<std::uint16_t>(static_cast<double>(stamp.week))};
+    return {whole_milliseconds(stamp), nearest<std::uint16_t>(static_cast<double>(stamp.week))};
 }
 
 std::uint16_t block_of_pages(const Subframe& message) {
@@ -170,11 +170,11 @@ Bytes lnav_record(const KeplerEphemeris& r, std::uint8_t svid, GpsTime end) {
     block.iodc = static_cast<std::uint16_t>(r.iodc & 0x3FF);
     block.iode2 = block.iode3 = static_cast<std::uint8_t>(r.iode & 0xFF);
     block.fit_interval_flag = (qzss ? r.fit_interval_h == 1 || r.fit_interval_h > 2 : r.fit_interval_h > 4) ? 1 : 0;
-    block.tgd = static_cast<float>(r.tgd);
+    block.tgd.set(r.tgd);
     block.toc = whole_seconds(toc);
-    block.af2 = static_cast<float>(r.af2);
-    block.af1 = static_cast<float>(r.af1);
-    block.af0 = static_cast<float>(r.af0);
+    block.af2.set(r.af2);
+    block.af1.set(r.af1);
+    block.af0.set(r.af0);
     block.orbit = sbf_orbit(r, toe);
     block.toc_week = week_of(toc, gps_weeks);
     block.toe_week = week_of(toe, gps_weeks);
@@ -192,12 +192,12 @@ Bytes beidou_record(const KeplerEphemeris& r, std::uint8_t svid, GpsTime end) {
     block.health = r.health == 0 ? 0 : 1;
     block.aodc = static_cast<std::uint8_t>(r.iodc & 31);
     block.aode = static_cast<std::uint8_t>(r.iode & 31);
-    block.tgd1 = static_cast<float>(r.tgd);
-    block.tgd2 = static_cast<float>(r.tgd2);
+    block.tgd1.set(r.tgd);
+    block.tgd2.set(r.tgd2);
     block.toc = whole_seconds(toc);
-    block.af2 = static_cast<float>(r.af2);
-    block.af1 = static_cast<float>(r.af1);
-    block.af0 = static_cast<float>(r.af0);
+    block.af2.set(r.af2);
+    block.af1.set(r.af1);
+    block.af0.set(r.af0);
     block.orbit = sbf_orbit(r, toe);
     block.toc_week = week_of(toc, beidou_weeks);
     block.toe_week = week_of(toe, beidou_weeks);
@@ -219,16 +219,16 @@ Bytes galileo_record(const KeplerEphemeris& r, std::uint8_t svid, GpsTime end) {
     block.svid = svid;
     block.orbit = sbf_orbit(r, toe);
     block.toc = whole_seconds(toc);
-    block.af2 = static_cast<float>(r.af2);
-    block.af1 = static_cast<float>(r.af1);
+    block.af2.set(r.af2);
+    block.af1.set(r.af1);
     block.af0 = r.af0;
     block.toe_week = week_of(toe, galileo_weeks);
     block.toc_week = week_of(toc, galileo_weeks);
     block.iod_nav = static_cast<std::uint16_t>(r.iode & 0x3FF);
     block.health = galileo_health(r.health);
     block.sisa_l1_e5b = static_cast<std::uint8_t>(inav_accuracy_index(r.accuracy_m));
-    block.bgd_l1_e5a = static_cast<float>(r.tgd);
-    block.bgd_l1_e5b = static_cast<float>(r.tgd2);
+    block.bgd_l1_e5a.set(r.tgd);
+    block.bgd_l1_e5b.set(r.tgd2);
     return encode_sbf(block);
 }
 
@@ -255,9 +255,9 @@ Bytes glonass_record(const GlonassEphemeris& r, std::uint8_t svid, GpsTime end, 
         block.velocity[i] = static_cast<float>(r.velocity_mps[i] * km);
         block.acceleration[i] = static_cast<float>(r.acceleration_mps2[i] * km);
     }
-    block.gamma = static_cast<float>(r.clock_drift);
-    block.tau = static_cast<float>(-r.clock_bias);
-    block.dtau = static_cast<float>(r.group_delay_l2);
+    block.gamma.set(r.clock_drift);
+    block.tau.set(-r.clock_bias);
+    block.dtau.set(r.group_delay_l2);
     const WeekAndTow toe = week_and_tow(r.toe);
     block.toe = whole_seconds(toe);
     block.toe_week = week_of(toe, 1024);
@@ -266,7 +266,7 @@ Bytes glonass_record(const GlonassEphemeris& r, std::uint8_t svid, GpsTime end, 
     block.tb = static_cast<std::uint16_t>(r.iode * quarter_hour_min);
     block.p2 = static_cast<std::uint8_t>(r.iode % 2);
     block.day = four_year_day(end, leap_seconds);
-    block.accuracy = sbf_u2(r.accuracy_m * 100);
+    block.accuracy.set(r.accuracy_m);
     return encode_sbf(block);
 }
 

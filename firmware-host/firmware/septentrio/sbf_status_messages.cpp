@@ -94,16 +94,16 @@ SbfBaseVectorGeod sbf_base_vector(const NavigationState& state) {
     base.delta_up = line->up;
     const VelocityNed& v = state.epoch.fix.velocity;
     if (!line->moving) {
-        base.vel_east = static_cast<float>(0 - v.east);
-        base.vel_north = static_cast<float>(0 - v.north);
-        base.vel_up = static_cast<float>(v.down);
+        base.vel_east.set(0 - v.east);
+        base.vel_north.set(0 - v.north);
+        base.vel_up.set(v.down);
     }
     const double horizontal = std::hypot(line->east, line->north);
     const double azimuth = std::atan2(line->east, line->north) * sbf_degrees;
     base.azimuth = static_cast<std::uint16_t>(std::lround((azimuth < 0 ? azimuth + 360 : azimuth) * 100) % 36000);
-    base.elevation = field<std::int16_t>(std::atan2(line->up, horizontal) * sbf_degrees * 100);
-    if (state.corrections.station) base.reference_id = sbf_u2(*state.corrections.station);
-    if (state.corrections.age) base.corr_age = sbf_u2(state.corrections.age->value() * 100);
+    base.elevation.set(std::atan2(line->up, horizontal) * sbf_degrees);
+    if (state.corrections.station) base.reference_id.set(*state.corrections.station);
+    if (state.corrections.age) base.corr_age.set(state.corrections.age->value());
     base.signal_info = sbf_signal_info(state);
     block.bases.push_back(base);
     return block;

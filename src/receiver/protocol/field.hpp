@@ -179,8 +179,16 @@ struct Field<Declared, Raw, 1> : RawNumber<Raw> {
         else
             return value;
     }
-    /// The nearest number to a value in the declared unit.
-    void set(double value) { this->raw = nearest<Raw>(value * format.divisor / format.factor); }
+    /// The nearest number to a value in the declared unit. Where the largest or the least number stands for nothing, a
+    /// value beyond the range is the one beside it.
+    void set(double value) {
+        using Limits = std::numeric_limits<Raw>;
+        this->raw = nearest<Raw>(value * format.divisor / format.factor);
+        if constexpr (std::is_integral_v<Raw> && format.can_be_absent && format.absent != 0) {
+            if (this->raw == format.absent && this->raw == Limits::max()) --this->raw;
+            if (this->raw == format.absent && this->raw == Limits::min()) ++this->raw;
+        }
+    }
 };
 
 /// As many as the message says or has.

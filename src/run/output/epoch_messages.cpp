@@ -177,20 +177,14 @@ namespace {
 
 constexpr std::uint8_t fix_type_3d = 3;
 
-// A value that is known is none of 65535, which means that it is not.
-std::uint16_t known_hundredths(double value) {
-    constexpr std::uint16_t most = 0xFFFE;
-    return std::min(most, firmware::field<std::uint16_t>(value * 100));
-}
-
 void put_accuracy(const Fix& fix, HilGpsAccuracy accuracy, MavlinkHilGps& to) {
     if (accuracy == HilGpsAccuracy::px4_cm) {
-        to.eph = known_hundredths(fix.horizontal_accuracy.value());
-        to.epv = known_hundredths(fix.vertical_accuracy.value());
+        to.eph.set(fix.horizontal_accuracy.value());
+        to.epv.set(fix.vertical_accuracy.value());
         return;
     }
-    if (fix.dop.hdop > 0) to.eph = known_hundredths(fix.dop.hdop);
-    if (fix.dop.vdop > 0) to.epv = known_hundredths(fix.dop.vdop);
+    if (fix.dop.hdop > 0) to.eph.set(fix.dop.hdop);
+    if (fix.dop.vdop > 0) to.epv.set(fix.dop.vdop);
 }
 
 }  // namespace
@@ -204,15 +198,18 @@ MavlinkHilGps mavlink_hil_gps(const firmware::NavigationState& state, HilGpsAccu
     message.satellites_visible = known.satellites_visible;
     message.lat = known.lat;
     message.lon = known.lon;
-    if (firmware::has_place(state)) message.alt = firmware::field<std::int32_t>(firmware::msl_height(fix) * 1000);
+    if (firmware::has_place(state)) message.alt.set(firmware::msl_height(fix));
     if (!firmware::has_solution(state)) return message;
     put_accuracy(fix, accuracy, message);
-    message.vel = known_hundredths(fix.speed.value());
-    message.vn = firmware::field<std::int16_t>(fix.velocity.north * 100);
-    message.ve = firmware::field<std::int16_t>(fix.velocity.east * 100);
-    message.vd = firmware::field<std::int16_t>(fix.velocity.down * 100);
+    message.vel.set(fix.speed.value());
+    message.vn.set(fix.velocity.north);
+    message.ve.set(fix.velocity.east);
+    message.vd.set(fix.velocity.down);
     constexpr std::uint16_t full_turn = 36000;
-    if (state.course) message.cog = known_hundredths(state.course->deg()) % full_turn;
+    if (state.course) {
+        message.cog.set(state.course->deg());
+        message.cog = message.cog % full_turn;
+    }
     message.yaw = known.yaw;
     return message;
 }

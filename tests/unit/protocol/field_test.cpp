@@ -67,6 +67,18 @@ TEST(Field, SettingRoundsToTheNearestAndStaysInRange) {
     EXPECT_EQ(ecef[2], 1235);
 }
 
+TEST(Field, AValueBeyondTheRangeIsNeverTakenForAbsence) {
+    U2<"h_acc_m*1e-2!65535"> accuracy;
+    accuracy.set(1e6);
+    EXPECT_EQ(accuracy.value(), 655.34);
+    I2<"elevation_deg*1e-2!-32768"> elevation;
+    elevation.set(-1e6);
+    EXPECT_EQ(elevation, -32767);
+    U2<"pdop*1e-2!0"> dop = 1;
+    dop.set(0);
+    EXPECT_EQ(dop.value(), std::nullopt);
+}
+
 // Names of a message differ, those of its groups among them.
 template <class Message>
 void expect_distinct_names(const Message& message) {

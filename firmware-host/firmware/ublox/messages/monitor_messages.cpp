@@ -59,14 +59,14 @@ MonSys system_load(const ReportContext& context) {
     MonSys m;
     m.boot_type = boot_types[static_cast<std::size_t>(context.state.boot_cause)];
     m.cpu_load = m.cpu_load_max =
-        field<std::uint8_t>(std::min(100.0, idle_percent + percent_per_satellite * static_cast<double>(tracked)));
+        nearest<std::uint8_t>(std::min(100.0, idle_percent + percent_per_satellite * static_cast<double>(tracked)));
     m.mem_usage = 8;
     m.mem_usage_max = 19;
     for (const PortStatus& port : context.ports) {
-        m.io_usage = std::max(m.io_usage.raw, field<std::uint8_t>(port.usage_percent));
-        m.io_usage_max = std::max(m.io_usage_max.raw, field<std::uint8_t>(port.peak_usage_percent));
+        m.io_usage = std::max(m.io_usage.raw, nearest<std::uint8_t>(port.usage_percent));
+        m.io_usage_max = std::max(m.io_usage_max.raw, nearest<std::uint8_t>(port.peak_usage_percent));
     }
-    m.run_time = field<std::uint32_t>(std::floor(context.state.since_boot.value()));
+    m.run_time.set(std::floor(context.state.since_boot.value()));
     m.temp_value = 28;
     return m;
 }
@@ -142,8 +142,8 @@ MonComms communications(const ReportContext& context) {
         item.port_id = comms_port_id(port.id, context.board);
         item.tx_pending = pending_field(port);
         item.tx_bytes = byte_counter(port.bytes_out);
-        item.tx_usage = field<std::uint8_t>(port.usage_percent);
-        item.tx_peak_usage = field<std::uint8_t>(port.peak_usage_percent);
+        item.tx_usage.set(port.usage_percent);
+        item.tx_peak_usage.set(port.peak_usage_percent);
         item.rx_bytes = byte_counter(port.bytes_in);
         item.overrun_errs = port.overruns;
         item.msgs = port.messages_in;
@@ -160,8 +160,8 @@ MonTxbuf transmit_buffers(const ReportContext& context) {
     for (const PortStatus& port : context.ports) {
         const std::size_t slot = port_slot(port);
         m.pending[slot] = pending_field(port);
-        m.usage[slot] = field<std::uint8_t>(port.usage_percent);
-        m.peak_usage[slot] = field<std::uint8_t>(port.peak_usage_percent);
+        m.usage.set(slot, port.usage_percent);
+        m.peak_usage.set(slot, port.peak_usage_percent);
         m.t_usage = std::max(m.t_usage.raw, m.usage[slot]);
         m.t_peak_usage = std::max(m.t_peak_usage.raw, m.peak_usage[slot]);
         if (port.transmit_full) m.errors = static_cast<std::uint8_t>(m.errors | 1u << slot | 0x80);

@@ -31,14 +31,14 @@ Message hardware(const MonitorStatus& monitors) {
     m.pin_bank = pins_bank;
     m.pin_dir = pins_output;
     m.pin_val = pins_value;
-    m.noise_per_ms = field<std::uint16_t>(monitors.upper.noise_per_ms);
-    m.agc_cnt = std::min<std::uint16_t>(8191, field<std::uint16_t>(monitors.upper.agc));
+    m.noise_per_ms.set(monitors.upper.noise_per_ms);
+    m.agc_cnt = std::min<std::uint16_t>(8191, nearest<std::uint16_t>(monitors.upper.agc));
     m.a_status = static_cast<std::uint8_t>(monitors.antenna);
-    m.a_power = field<std::uint8_t>(monitors.antenna_power);
+    m.a_power.set(monitors.antenna_power);
     m.flags = static_cast<std::uint8_t>(1 | shown_jamming_state(monitors, monitors.upper) << 2);
     m.used_mask = pins_used;
     std::copy_n(virtual_pins.begin(), m.vp.size(), m.vp.begin());
-    m.jam_ind = field<std::uint8_t>(monitors.upper.jamming_indicator);
+    m.jam_ind.set(monitors.upper.jamming_indicator);
     m.pull_h = pins_pull_high;
     return m;
 }
@@ -101,10 +101,10 @@ MonRf radio(const ReportContext& context) {
         item.block_id = static_cast<std::uint8_t>(block);
         item.flags = static_cast<std::uint8_t>(shown_jamming_state(monitors, band));
         item.ant_status = static_cast<std::uint8_t>(monitors.antenna);
-        item.ant_power = field<std::uint8_t>(monitors.antenna_power);
-        item.noise_per_ms = field<std::uint16_t>(band.noise_per_ms);
-        item.agc_cnt = std::min<std::uint16_t>(8191, field<std::uint16_t>(band.agc));
-        item.jam_ind = field<std::uint8_t>(band.jamming_indicator);
+        item.ant_power.set(monitors.antenna_power);
+        item.noise_per_ms.set(band.noise_per_ms);
+        item.agc_cnt = std::min<std::uint16_t>(8191, nearest<std::uint16_t>(band.agc));
+        item.jam_ind.set(band.jamming_indicator);
         item.ofs_i = offset_i;
         item.mag_i = magnitude_i;
         item.ofs_q = offset_q;
@@ -121,13 +121,13 @@ MonSpanItem spectrum(double centre_hz, const BandMonitor& monitor) {
     MonSpanItem item;
     item.span = 128'000'000;
     item.res = 500'000;
-    item.center = field<std::uint32_t>(centre_hz);
-    item.pga = field<std::uint8_t>(38.0 * monitor.agc / 8191.0 + 19.0);
+    item.center.set(centre_hz);
+    item.pga.set(38.0 * monitor.agc / 8191.0 + 19.0);
     for (std::size_t i = 0; i < item.spectrum.size(); ++i) {
         const double offset_hz = (static_cast<double>(i) - 127.5) * step_hz;
         const double filter = passband_quarter_db / (1 + std::pow(offset_hz / passband_hz, 4));
         const double peak = jam_quarter_db * monitor.jamming_indicator / (1 + std::pow(offset_hz / jam_hz, 2));
-        item.spectrum[i] = field<std::uint8_t>(floor_quarter_db + filter + peak);
+        item.spectrum[i] = nearest<std::uint8_t>(floor_quarter_db + filter + peak);
     }
     return item;
 }

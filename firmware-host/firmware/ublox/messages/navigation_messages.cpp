@@ -11,10 +11,11 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr int newest_without_vehicle = 7;                                   // generation of u-blox
-constexpr std::int32_t unknown_h_msl = -17000;                              // mm, the geoid at 0° N 0° E
-constexpr std::uint32_t unknown_v_acc = 3750000128, unknown_s_acc = 20000;  // mm, mm/s
-constexpr std::uint32_t unknown_heading = 18000000;                         // 1e-5 deg
+constexpr int newest_without_vehicle = 7;            // generation of u-blox
+constexpr std::int32_t unknown_h_msl = -17000;       // mm, the geoid at 0° N 0° E
+constexpr std::uint32_t unknown_v_acc = 3750000128;  // mm
+constexpr double unknown_speed_acc_mps = 20;         // m/s
+constexpr double unknown_course_accuracy_deg = 180;
 // What undocumented bytes are on captured receivers.
 constexpr std::uint32_t pvt_reserved = 0x2F56405C, sol_reserved = 0x0003644A;
 
@@ -28,22 +29,21 @@ std::uint8_t correction_age_code(const std::optional<Seconds>& age) {
     return code;
 }
 
-struct PlaceFields {
-    std::int32_t lon = 0, lat = 0, height = 0, h_msl = unknown_h_msl;
-    std::uint32_t h_acc = unknown_accuracy, v_acc = unknown_v_acc;
-};
-
-PlaceFields place_fields(const NavigationState& state) {
-    if (!state.ever_had_fix) return {};
+template <class Message>
+void put_place(const NavigationState& state, Message& m) {
+    m.h_msl = unknown_h_msl;
+    m.h_acc = unknown_accuracy;
+    m.v_acc = unknown_v_acc;
+    if (!state.ever_had_fix) return;
     const Fix& fix = state.epoch.fix;
     const double height = fix.position.height.above_ellipsoid.value();
-    PlaceFields place{field<std::int32_t>(fix.position.longitude.deg() * 1e7),
-                      field<std::int32_t>(fix.position.latitude.deg() * 1e7), field<std::int32_t>(height * 1e3),
-                      field<std::int32_t>((height - fix.geoid_undulation.value()) * 1e3)};
-    if (!estimates_known(state)) return place;
-    place.h_acc = field<std::uint32_t>(fix.horizontal_accuracy.value() * 1e3);
-    place.v_acc = field<std::uint32_t>(fix.vertical_accuracy.value() * 1e3);
-    return place;
+    m.lon.set(fix.position.longitude.deg());
+    m.lat.set(fix.position.latitude.deg());
+    m.height.set(height);
+    m.h_msl.set(height - fix.geoid_undulation.value());
+    if (!estimates_known(state)) return;
+    m.h_acc.set(fix.horizontal_accuracy.value());
+    m.v_acc.set(fix.vertical_accuracy.value());
 }
 
 std::uint8_t pvt_valid(const ReportContext& context) {
@@ -73,18 +73,22 @@ void put_time(const ReportContext& context, NavPvt& pvt) {
     pvt.nano = now.nano;
 }
 
+template <class Field>
+void put_speed_accuracy(const NavigationState& state, Field& accuracy) {
+    accuracy.set(estimates_known(state) ? state.epoch.fix.speed_accuracy.value() : unknown_speed_acc_mps);
+}
+
 void put_motion(const NavigationState& state, NavPvt& pvt) {
     const Fix& fix = state.epoch.fix;
-    pvt.s_acc = unknown_s_acc;
-    pvt.head_acc = unknown_heading;
+    put_speed_accuracy(state, pvt.s_acc);
+    pvt.head_acc.set(unknown_course_accuracy_deg);
     if (!estimates_known(state)) return;
-    pvt.vel_n = field<std::int32_t>(fix.velocity.north * 1e3);
-    pvt.vel_e = field<std::int32_t>(fix.velocity.east * 1e3);
-    pvt.vel_d = field<std::int32_t>(fix.velocity.down * 1e3);
-    pvt.g_speed = field<std::int32_t>(fix.speed.value() * 1e3);
+    pvt.vel_n.set(fix.velocity.north);
+    pvt.vel_e.set(fix.velocity.east);
+    pvt.vel_d.set(fix.velocity.down);
+    pvt.g_speed.set(fix.speed.value());
     pvt.head_mot = course_field(state);
-    pvt.s_acc = field<std::uint32_t>(fix.speed_accuracy.value() * 1e3);
-    pvt.head_acc = heading_accuracy_field(state);
+    pvt.head_acc.set(reported_course_accuracy_deg(state));
 }
 
 NavPvt navigation_pvt(const ReportContext& context) {
@@ -97,15 +101,9 @@ NavPvt navigation_pvt(const ReportContext& context) {
                                           static_cast<int>(state.power_save) << 2 | carrier_solution(fix) << 6);
     pvt.flags2 = pvt_flags2(context);
     pvt.num_sv = used_satellites(fix);
-    const PlaceFields place = place_fields(state);
-    pvt.lon = place.lon;
-    pvt.lat = place.lat;
-    pvt.height = place.height;
-    pvt.h_msl = place.h_msl;
-    pvt.h_acc = place.h_acc;
-    pvt.v_acc = place.v_acc;
+    put_place(state, pvt);
     put_motion(state, pvt);
-    pvt.p_dop = dop_field(fix.dop.pdop, has_dops(fix));
+    pvt.p_dop.set(reported_dop(fix.dop.pdop, has_dops(fix)));
     const bool invalid = !state.ever_had_fix && context.board.identity.generation >= 9;
     pvt.flags3 = static_cast<std::uint16_t>((invalid ? 1 : 0) | correction_age_code(state.corrections.age) << 1);
     if (context.board.identity.generation <= newest_without_vehicle) return pvt;
@@ -115,14 +113,9 @@ NavPvt navigation_pvt(const ReportContext& context) {
 }
 
 NavPosllh navigation_posllh(const ReportContext& context) {
-    const PlaceFields place = place_fields(context.state);
-    return {epoch_time(reported_time(context).time).i_tow,
-            place.lon,
-            place.lat,
-            place.height,
-            place.h_msl,
-            place.h_acc,
-            place.v_acc};
+    auto m = stamped<NavPosllh>(context);
+    put_place(context.state, m);
+    return m;
 }
 
 // A base that solves for the time alone knows its place all the same.
@@ -141,13 +134,13 @@ NavHpposllh navigation_hpposllh(const ReportContext& context) {
     m.h_acc = m.v_acc = unknown_accuracy;
     if (!state.ever_had_fix) return m;
     const double height = fix.position.height.above_ellipsoid.value();
-    put_split(fix.position.longitude.deg() * 1e9, 100, m.lon, m.lon_hp);
-    put_split(fix.position.latitude.deg() * 1e9, 100, m.lat, m.lat_hp);
-    put_split(height * 1e4, 10, m.height, m.height_hp);
-    put_split((height - fix.geoid_undulation.value()) * 1e4, 10, m.h_msl, m.h_msl_hp);
+    put_split(fix.position.longitude.deg(), m.lon, m.lon_hp);
+    put_split(fix.position.latitude.deg(), m.lat, m.lat_hp);
+    put_split(height, m.height, m.height_hp);
+    put_split(height - fix.geoid_undulation.value(), m.h_msl, m.h_msl_hp);
     if (!estimates_known(state)) return m;
-    m.h_acc = field<std::uint32_t>(fix.horizontal_accuracy.value() * 1e4);
-    m.v_acc = field<std::uint32_t>(fix.vertical_accuracy.value() * 1e4);
+    m.h_acc.set(fix.horizontal_accuracy.value());
+    m.v_acc.set(fix.vertical_accuracy.value());
     return m;
 }
 
@@ -163,57 +156,57 @@ Eigen::Vector3d earth_fixed_velocity(const NavigationState& state) {
     return LocalFrame(fix.position).to_ecef(local).vector();
 }
 
-// 1 σ in three dimensions, in units of 1/`per_metre` m.
-std::uint32_t place_accuracy(const NavigationState& state, double per_metre) {
-    if (!estimates_known(state)) return unknown_accuracy;
+// 1 σ in three dimensions.
+template <class Field>
+void put_place_accuracy(const NavigationState& state, Field& accuracy) {
+    accuracy = unknown_accuracy;
+    if (!estimates_known(state)) return;
     const Fix& fix = state.epoch.fix;
-    return field<std::uint32_t>(std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value()) * per_metre);
+    accuracy.set(std::hypot(fix.horizontal_accuracy.value(), fix.vertical_accuracy.value()));
 }
 
-std::uint32_t speed_accuracy_cm(const NavigationState& state) {
-    return estimates_known(state) ? field<std::uint32_t>(state.epoch.fix.speed_accuracy.value() * 1e2)
-                                  : unknown_s_acc / 10;
-}
-
-std::array<std::int32_t, 3> centimetres(const Eigen::Vector3d& metres) {
-    return {field<std::int32_t>(metres.x() * 1e2), field<std::int32_t>(metres.y() * 1e2),
-            field<std::int32_t>(metres.z() * 1e2)};
+template <class Field>
+void put_vector(const Eigen::Vector3d& values, Field& field) {
+    for (std::size_t i = 0; i < 3; ++i)
+        field.set(i, values[static_cast<Eigen::Index>(i)]);
 }
 
 NavPosecef navigation_posecef(const ReportContext& context) {
-    return {epoch_time(reported_time(context).time).i_tow, centimetres(earth_fixed(context.state)),
-            place_accuracy(context.state, 1e2)};
+    auto m = stamped<NavPosecef>(context);
+    put_vector(earth_fixed(context.state), m.ecef);
+    put_place_accuracy(context.state, m.p_acc);
+    return m;
 }
 
 NavHpposecef navigation_hpposecef(const ReportContext& context) {
     auto m = stamped<NavHpposecef>(context);
-    const Eigen::Vector3d place = earth_fixed(context.state);
-    for (std::size_t i = 0; i < 3; ++i)
-        put_split(place[static_cast<Eigen::Index>(i)] * 1e4, 100, m.ecef[i], m.ecef_hp[i]);
+    put_split(earth_fixed(context.state), m.ecef, m.ecef_hp);
     m.flags = place_is_valid(context) ? 0 : 1;
-    m.p_acc = place_accuracy(context.state, 1e4);
+    put_place_accuracy(context.state, m.p_acc);
     return m;
 }
 
 NavVelecef navigation_velecef(const ReportContext& context) {
-    return {epoch_time(reported_time(context).time).i_tow, centimetres(earth_fixed_velocity(context.state)),
-            speed_accuracy_cm(context.state)};
+    auto m = stamped<NavVelecef>(context);
+    put_vector(earth_fixed_velocity(context.state), m.ecef_v);
+    put_speed_accuracy(context.state, m.s_acc);
+    return m;
 }
 
 NavVelned navigation_velned(const ReportContext& context) {
     const NavigationState& state = context.state;
     auto m = stamped<NavVelned>(context);
-    m.s_acc = speed_accuracy_cm(state);
-    m.c_acc = unknown_heading;
+    put_speed_accuracy(state, m.s_acc);
+    m.c_acc.set(unknown_course_accuracy_deg);
     if (!estimates_known(state)) return m;
     const Fix& fix = state.epoch.fix;
-    m.vel_n = field<std::int32_t>(fix.velocity.north * 1e2);
-    m.vel_e = field<std::int32_t>(fix.velocity.east * 1e2);
-    m.vel_d = field<std::int32_t>(fix.velocity.down * 1e2);
-    m.speed = field<std::uint32_t>(std::hypot(fix.velocity.north, fix.velocity.east, fix.velocity.down) * 1e2);
-    m.g_speed = field<std::uint32_t>(fix.speed.value() * 1e2);
+    m.vel_n.set(fix.velocity.north);
+    m.vel_e.set(fix.velocity.east);
+    m.vel_d.set(fix.velocity.down);
+    m.speed.set(std::hypot(fix.velocity.north, fix.velocity.east, fix.velocity.down));
+    m.g_speed.set(fix.speed.value());
     m.heading = course_field(state);
-    m.c_acc = heading_accuracy_field(state);
+    m.c_acc.set(reported_course_accuracy_deg(state));
     return m;
 }
 
@@ -232,11 +225,11 @@ NavSol navigation_sol(const ReportContext& context) {
     m.week = week_field<std::int16_t>(state, now.stamp());
     m.gps_fix = fix_type_code(state.epoch.fix);
     m.flags = static_cast<std::uint8_t>(0xD0 | solution_flags(state));
-    m.ecef = centimetres(earth_fixed(state));
-    m.p_acc = place_accuracy(state, 1e2);
-    m.ecef_v = centimetres(earth_fixed_velocity(state));
-    m.s_acc = speed_accuracy_cm(state);
-    m.p_dop = dop_field(state.epoch.fix.dop.pdop, has_dops(state.epoch.fix));
+    put_vector(earth_fixed(state), m.ecef);
+    put_place_accuracy(state, m.p_acc);
+    put_vector(earth_fixed_velocity(state), m.ecef_v);
+    put_speed_accuracy(state, m.s_acc);
+    m.p_dop.set(reported_dop(state.epoch.fix.dop.pdop, has_dops(state.epoch.fix)));
     m.num_sv = used_satellites(state.epoch.fix);
     m.reserved2 = sol_reserved;
     return m;
@@ -255,22 +248,23 @@ NavStatus navigation_status(const ReportContext& context) {
     const int power_save = std::max(0, static_cast<int>(state.power_save) - 2);
     m.flags2 = static_cast<std::uint8_t>(power_save | static_cast<int>(state.monitors.spoofing) << 3 |
                                          carrier_solution(fix) << 6);
-    if (state.time_to_first_fix) m.ttff = field<std::uint32_t>(state.time_to_first_fix->value() * 1e3);
-    m.msss = field<std::uint32_t>(state.since_start.value() * 1e3);
+    if (state.time_to_first_fix) m.ttff.set(state.time_to_first_fix->value());
+    m.msss.set(state.since_start.value());
     return m;
 }
 
 NavDop navigation_dop(const ReportContext& context) {
     const Fix& fix = context.state.epoch.fix;
     const bool place = has_dops(fix), time = place || fix.type == FixType::time_only;
-    return {epoch_time(reported_time(context).time).i_tow,
-            dop_field(place ? fix.dop.gdop : fix.dop.tdop, time),  // of the time alone both are one
-            dop_field(fix.dop.pdop, place),
-            dop_field(fix.dop.tdop, time),
-            dop_field(fix.dop.vdop, place),
-            dop_field(fix.dop.hdop, place),
-            dop_field(fix.dop.ndop, place),
-            dop_field(fix.dop.edop, place)};
+    auto m = stamped<NavDop>(context);
+    m.g_dop.set(reported_dop(place ? fix.dop.gdop : fix.dop.tdop, time));  // of the time alone both are one
+    m.p_dop.set(reported_dop(fix.dop.pdop, place));
+    m.t_dop.set(reported_dop(fix.dop.tdop, time));
+    m.v_dop.set(reported_dop(fix.dop.vdop, place));
+    m.h_dop.set(reported_dop(fix.dop.hdop, place));
+    m.n_dop.set(reported_dop(fix.dop.ndop, place));
+    m.e_dop.set(reported_dop(fix.dop.edop, place));
+    return m;
 }
 
 constexpr UbxMaker solution_makers[] = {

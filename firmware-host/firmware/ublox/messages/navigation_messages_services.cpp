@@ -18,7 +18,7 @@ namespace {
 
 // CFG-ANA-USE_ANA (RECEIVER.md 3.5.1).
 // A course that is frozen says nothing of the motion.
-constexpr std::uint32_t half_turn = 18000000;  // 1e-5 deg
+constexpr double half_turn_deg = 180;
 
 // Of east, north and up the variances and covariances NN, NE, ND, EE, ED, DD.
 std::array<float, 6> in_ned(const Eigen::Matrix3d& enu) {
@@ -77,18 +77,18 @@ NavEell ellipse_message(const ReportContext& context) {
     m.major = m.minor = unknown_accuracy;
     const std::optional<ErrorEllipse> ellipse = error_ellipse(fix);
     if (!fix.has_position() || !ellipse) return m;
-    m.orient = field<std::uint16_t>(ellipse->orientation.deg() * 1e2);
-    m.major = field<std::uint32_t>(ellipse->semi_major.value() * 1e3);
-    m.minor = field<std::uint32_t>(ellipse->semi_minor.value() * 1e3);
+    m.orient.set(ellipse->orientation.deg());
+    m.major.set(ellipse->semi_major.value());
+    m.minor.set(ellipse->semi_minor.value());
     return m;
 }
 
 NavOdo odometer(const ReportContext& context) {
     const NavigationState& state = context.state;
     auto m = stamped<NavOdo>(context);
-    m.distance = field<std::uint32_t>(state.odometer_m);
-    m.total_distance = field<std::uint32_t>(state.odometer_total_m);
-    m.distance_std = field<std::uint32_t>(state.odometer_deviation_m);
+    m.distance.set(state.odometer_m);
+    m.total_distance.set(state.odometer_total_m);
+    m.distance_std.set(state.odometer_deviation_m);
     return m;
 }
 
@@ -133,11 +133,10 @@ NavRelposned0 relative_position_m8(const ReportContext& context, const std::opti
     m.flags = relative_flags(context.state, baseline);
     if (!baseline) return m;
     const RelativePosition& relative = baseline->vector;
-    m.ref_station_id = field<std::uint16_t>(relative.base_station);
-    const double parts[] = {relative.north_m, relative.east_m, relative.down_m};
-    for (std::size_t i = 0; i < 3; ++i)
-        put_split(parts[i] * 1e4, 100, m.rel_pos[i], m.rel_pos_hp[i]);
-    m.acc.fill(field<std::uint32_t>(relative.deviation.value() * 1e4));
+    m.ref_station_id.set(relative.base_station);
+    put_split(Eigen::Vector3d(relative.north_m, relative.east_m, relative.down_m), m.rel_pos, m.rel_pos_hp);
+    for (std::size_t i = 0; i < m.acc.size(); ++i)
+        m.acc.set(i, relative.deviation.value());
     return m;
 }
 
@@ -154,13 +153,13 @@ NavRelposned relative_position(const ReportContext& context) {
     if (!baseline) return m;
     const RelativePosition* relative = &baseline->vector;
     const double length = std::hypot(relative->north_m, relative->east_m, relative->down_m);
-    put_split(length * 1e4, 100, m.rel_pos_length, m.rel_pos_length_hp);
+    put_split(length, m.rel_pos_length, m.rel_pos_length_hp);
     m.acc_length = m.acc[0];
     const double heading = std::atan2(relative->east_m, relative->north_m) * 180 / std::numbers::pi;
-    m.rel_pos_heading = field<std::int32_t>(std::fmod(heading + 360, 360.0) * 1e5);
+    m.rel_pos_heading.set(std::fmod(heading + 360, 360.0));
     const double level = std::hypot(relative->north_m, relative->east_m);
     const double heading_deviation = level > 0 ? std::atan2(relative->deviation.value(), level) : std::numbers::pi;
-    m.acc_heading = std::min(half_turn, field<std::uint32_t>(heading_deviation * 180 / std::numbers::pi * 1e5));
+    m.acc_heading.set(std::min(half_turn_deg, heading_deviation * 180 / std::numbers::pi));
     if (relative->base_moves && relative->fixed && level > 0) m.flags |= 0x100;
     return m;
 }
@@ -171,14 +170,13 @@ NavSvin survey(const ReportContext& context) {
     if (!survey) return m;
     m.valid = survey->done() ? 1 : 0;
     m.active = survey->done() ? 0 : 1;
-    m.dur = field<std::uint32_t>(std::floor(survey->time().value()));
+    m.dur.set(std::floor(survey->time().value()));
     m.mean_acc = unknown_accuracy;
     const auto mean = survey->mean();
     if (!mean) return m;
-    for (std::size_t i = 0; i < 3; ++i)
-        put_split(mean->vector()[static_cast<Eigen::Index>(i)] * 1e4, 100, m.mean[i], m.mean_hp[i]);
-    m.mean_acc = field<std::uint32_t>(survey->accuracy().value() * 1e4);
-    m.obs = field<std::uint32_t>(static_cast<double>(survey->positions()));
+    put_split(mean->vector(), m.mean, m.mean_hp);
+    m.mean_acc.set(survey->accuracy().value());
+    m.obs.set(static_cast<double>(survey->positions()));
     return m;
 }
 
@@ -186,8 +184,9 @@ NavDgps differential(const ReportContext& context) {
     constexpr std::int32_t no_age = 999999;  // of a captured receiver without corrections
     const NavigationState& state = context.state;
     auto m = stamped<NavDgps>(context);
-    m.age = state.corrections.age ? field<std::int32_t>(state.corrections.age->value() * 1e3) : no_age;
-    m.base_id = field<std::int16_t>(state.corrections.station.value_or(0));
+    m.age = no_age;
+    if (state.corrections.age) m.age.set(state.corrections.age->value());
+    m.base_id.set(state.corrections.station.value_or(0));
     if (state.corrections.state == CorrectionState::none) return m;
     m.status = 2;
     for (const SatelliteStatus& s : state.epoch.fix.satellites) {
@@ -196,8 +195,7 @@ NavDgps differential(const ReportContext& context) {
         NavDgpsItem item;
         item.sv_id = *number;
         item.flags = static_cast<std::uint8_t>(0x10 | (m.satellites.size() & 0x0F));
-        item.age_c =
-            state.corrections.age ? field<std::uint16_t>(state.corrections.age->value() * 1e3) : std::uint16_t{0};
+        if (state.corrections.age) item.age_c.set(state.corrections.age->value());
         m.satellites.push_back(item);
     }
     return m;
@@ -242,9 +240,9 @@ NavPl protection_level(const ReportContext& context) {
     if (!state.fix_ok || !fix.has_position() || !ellipse) return m;
     m.pl_pos_valid = 1;
     m.invalidity_reason[0] = 0;
-    m.pl_pos = {field<std::uint32_t>(ellipse->north.value() * sigmas * 1e3),
-                field<std::uint32_t>(ellipse->east.value() * sigmas * 1e3),
-                field<std::uint32_t>(fix.vertical_accuracy.value() * sigmas * 1e3)};
+    m.pl_pos.set(0, ellipse->north.value() * sigmas);
+    m.pl_pos.set(1, ellipse->east.value() * sigmas);
+    m.pl_pos.set(2, fix.vertical_accuracy.value() * sigmas);
     return m;
 }
 
@@ -269,25 +267,24 @@ constexpr UbxMaker service_makers[] = {maker<solution_covariance>,
 
 }  // namespace
 
-std::uint16_t dop_field(double dop, bool computed) {
-    if (!computed || !std::isfinite(dop)) return unknown_dop;
-    return std::min(unknown_dop, field<std::uint16_t>(dop * 1e2));
+double reported_dop(double dop, bool computed) {
+    return computed && std::isfinite(dop) ? std::min(unknown_dop, dop) : unknown_dop;
 }
 
 std::uint8_t used_satellites(const Fix& fix) {
-    return fix.type == FixType::none ? std::uint8_t{0} : field<std::uint8_t>(fix.satellites_used());
+    return fix.type == FixType::none ? std::uint8_t{0} : nearest<std::uint8_t>(fix.satellites_used());
 }
 
 std::int32_t course_field(const NavigationState& state) {
     if (!state.course) return 0;
     constexpr std::int32_t turn = 36000000;
-    const std::int32_t course = field<std::int32_t>(std::fmod(state.course->deg(), 360.0) * 1e5);
+    const std::int32_t course = nearest<std::int32_t>(std::fmod(state.course->deg(), 360.0) * 1e5);
     return (course % turn + turn) % turn;
 }
 
-std::uint32_t heading_accuracy_field(const NavigationState& state) {
-    if (!state.course || state.course_is_frozen) return half_turn;
-    return std::min(half_turn, field<std::uint32_t>(state.epoch.fix.course_accuracy.deg() * 1e5));
+double reported_course_accuracy_deg(const NavigationState& state) {
+    if (!state.course || state.course_is_frozen) return half_turn_deg;
+    return std::min(half_turn_deg, state.epoch.fix.course_accuracy.deg());
 }
 
 std::vector<Bytes> make_service_message(UbxMessageId message, const ReportContext& context) {

@@ -47,7 +47,7 @@ NavTimegps time_gps(const ReportContext& context) {
     const NavigationState& state = context.state;
     NavTimegps m{now.i_tow, now.f_tow, 0, 0, gnss_time_valid(state), time_accuracy_ns(state)};
     m.week = week_field<std::int16_t>(state, now.stamp());
-    m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
+    m.leap_s.set(state.epoch.fix.leap_seconds);
     return m;
 }
 
@@ -82,7 +82,7 @@ Message system_time(const ReportContext& context, WeekAndTow (*system)(GpsTime),
             now.seconds,
             now.rest,
             week_field<std::int16_t>(context.state, now.stamp()),
-            field<std::int8_t>(context.state.epoch.fix.leap_seconds - ahead_of_gps_leaps),
+            nearest<std::int8_t>(context.state.epoch.fix.leap_seconds - ahead_of_gps_leaps),
             gnss_time_valid(context.state),
             time_accuracy_ns(context.state)};
 }
@@ -109,18 +109,18 @@ NavTimeglo time_glonass(const ReportContext& context) {
     m.f_tod = static_cast<std::int32_t>((reported.time - rounded).count());
     m.n_t = static_cast<std::uint16_t>(days % days_of_cycle + 1);
     const auto cycles = days / days_of_cycle;
-    m.n_4 = field<std::uint8_t>(static_cast<double>(cycles + 1));
+    m.n_4.set(static_cast<double>(cycles + 1));
     m.valid = static_cast<std::uint8_t>((context.state.time.time ? 1 : 0) | (context.state.time.date ? 2 : 0));
     m.t_acc = time_accuracy_ns(context.state);
     return m;
 }
 
 void put_leap_event(GpsTime now, const LeapSeconds::Step& event, int change, NavTimels& m) {
-    m.ls_change = field<std::int8_t>(event.from > now ? change : 0);
-    m.time_to_ls_event = field<std::int32_t>(difference(event.from, now).value());
+    m.ls_change = nearest<std::int8_t>(event.from > now ? change : 0);
+    m.time_to_ls_event.set(difference(event.from, now).value());
     // The day at whose end it comes: 1 is Sunday, 7 Saturday.
     const WeekAndTow day = week_and_tow(event.from - std::chrono::hours(12));
-    m.date_of_ls_gps_wn = field<std::uint16_t>(static_cast<double>(day.week));
+    m.date_of_ls_gps_wn.set(static_cast<double>(day.week));
     m.date_of_ls_gps_dn = static_cast<std::uint16_t>(day.tow / std::chrono::hours(24) + 1);
 }
 
@@ -156,7 +156,7 @@ NavTimels time_leap_seconds(const ReportContext& context) {
     NavTimels m;
     const GpsTime now = std::chrono::round<std::chrono::milliseconds>(reported.time);
     m.i_tow = epoch_time(now).i_tow;
-    m.curr_ls = field<std::int8_t>(context.state.epoch.fix.leap_seconds);
+    m.curr_ls.set(context.state.epoch.fix.leap_seconds);
     m.src_of_curr_ls = from_firmware;
     if (!context.state.time.leap_seconds) return m;
     m.src_of_curr_ls = leap_source_code(context);
@@ -178,8 +178,8 @@ NavClock receiver_clock(const ReportContext& context) {
     if (!estimates_known(state)) return m;
     const Fix& fix = state.epoch.fix;
     m.clk_b = static_cast<std::int32_t>(clock_ahead(state).count());
-    m.clk_d = field<std::int32_t>(fix.clock_drift.value() / speed_of_light * 1e9);
-    m.f_acc = field<std::uint32_t>(fix.speed_accuracy.value() / speed_of_light * 1e12);
+    m.clk_d.set(fix.clock_drift.value() / speed_of_light * 1e9);
+    m.f_acc.set(fix.speed_accuracy.value() / speed_of_light * 1e12);
     return m;
 }
 
@@ -251,15 +251,14 @@ TimTp next_pulse(const ReportContext& context, const PulseGrid& grid) {
     const Nanoseconds sub_ms = value.tow % 1ms;
     TimTp m;
     m.tow_ms = static_cast<std::uint32_t>(value.tow / 1ms);
-    m.tow_sub_ms = field<std::uint32_t>(static_cast<double>(sub_ms.count()) * 1e-6 * 4294967296.0);
+    m.tow_sub_ms.set(static_cast<double>(sub_ms.count()) * 1e-6);
     m.week = week_field<std::uint16_t>(state, value);
     const bool known = state.epoch.fix.type != FixType::none;
     const int unknown = context.board.identity.generation > 8 ? 0x30 : 0x10;
     m.flags = static_cast<std::uint8_t>((grid.base == grid_utc ? 1 : 0) | (state.time.leap_seconds ? 2 : 0) |
                                         (known ? 8 : unknown));
     if (known)
-        m.q_err = field<std::int32_t>(
-            std::remainder(state.epoch.fix.clock_bias.value() / speed_of_light * 1e9, pulse_step_ns) * 1e3);
+        m.q_err.set(std::remainder(state.epoch.fix.clock_bias.value() / speed_of_light * 1e9, pulse_step_ns) * 1e3);
     m.ref_info = reference_of(grid.base);
     return m;
 }

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint16_t longest_lock_ms = 64500;
+constexpr double longest_lock_s = 64.5;
 constexpr std::uint8_t invalid_phase_deviation = 15;
 
 // n of unit·2^n, 0 … 15.
@@ -26,7 +26,7 @@ std::uint8_t exponent_code(double deviation, double unit) {
 // n of 0.004 cycles·n; 15 says that there is no phase.
 std::uint8_t phase_deviation_code(const Observation& o) {
     if (!o.carrier_phase) return invalid_phase_deviation;
-    return std::clamp(field<std::uint8_t>(o.carrier_phase_deviation / 0.004), std::uint8_t{1}, std::uint8_t{14});
+    return std::clamp(nearest<std::uint8_t>(o.carrier_phase_deviation / 0.004), std::uint8_t{1}, std::uint8_t{14});
 }
 
 // Cycles. Those of geostationary BeiDou satellites lie half a cycle below the phase that RINEX means, as decoders of
@@ -40,16 +40,15 @@ RxmRawxItem raw_measurement(const Observation& o, const ReportContext& context) 
     RxmRawxItem item;
     item.pr_mes = o.pseudorange->value();
     item.cp_mes = raw_phase(o);
-    item.do_mes = static_cast<float>(o.doppler ? o.doppler->value() : 0);
+    item.do_mes.set(o.doppler ? o.doppler->value() : 0);
     item.gnss_id = gnss_id(o.satellite.constellation);
     item.sv_id = sv_id(o.satellite);
     item.sig_id = context.board.identity.generation <= 8
                       ? std::uint8_t{0}
                       : signal_id(o.satellite, o.signal, context.config.settings.beidou_b1c);
     item.freq_id = frequency_id(o.satellite, o.signal, o.carrier);
-    item.locktime =
-        o.carrier_phase ? std::min(longest_lock_ms, field<std::uint16_t>(o.lock_time.value() * 1e3)) : std::uint16_t{0};
-    item.cno = field<std::uint8_t>(o.cn0.value());
+    if (o.carrier_phase) item.locktime.set(std::min(longest_lock_s, o.lock_time.value()));
+    item.cno.set(o.cn0.value());
     item.pr_stdev = exponent_code(o.pseudorange_deviation.value(), 0.01);
     item.cp_stdev = phase_deviation_code(o);
     item.do_stdev = exponent_code(o.doppler_deviation.value(), 0.002);
@@ -69,7 +68,7 @@ GpsTime measurement_time(const ReportContext& context) {
 RxmRawx raw_measurements(const ReportContext& context) {
     const NavigationState& state = context.state;
     RxmRawx m;
-    m.leap_s = field<std::int8_t>(state.epoch.fix.leap_seconds);
+    m.leap_s.set(state.epoch.fix.leap_seconds);
     m.rec_stat = state.time.leap_seconds ? 1 : 0;
     m.version = 1;
     if (!state.time.time || !state.time.date) {
@@ -130,16 +129,16 @@ RxmMeasxItem code_measurement(const Observation& o, bool b1c) {
     RxmMeasxItem item;
     item.gnss_id = gnss_id(o.satellite.constellation);
     item.sv_id = sv_id(o.satellite);
-    item.cno = field<std::uint8_t>(o.cn0.value());
+    item.cno.set(o.cn0.value());
     item.mpath_indic = multipath_indicator(o);
     if (o.doppler) {
-        item.doppler_hz = field<std::int32_t>(o.doppler->value() / 0.2);
-        item.doppler_ms = field<std::int32_t>(o.doppler->value() * speed_of_light / o.carrier.value() / 0.04);
+        item.doppler_hz.set(o.doppler->value());
+        item.doppler_ms.set(o.doppler->value() * speed_of_light / o.carrier.value());
     }
-    item.whole_chips = field<std::uint16_t>(std::floor(chips));
+    item.whole_chips.set(std::floor(chips));
     item.frac_chips = static_cast<std::uint16_t>(std::clamp((chips - std::floor(chips)) * 1024, 0.0, 1023.0));
-    item.code_phase = field<std::uint32_t>(std::floor(phase * 2097152.0));
-    item.int_code_phase = field<std::uint8_t>(whole_ms);
+    item.code_phase = nearest<std::uint32_t>(std::floor(phase * 2097152.0));
+    item.int_code_phase.set(whole_ms);
     item.pseu_range_rms_err = range_error_index(o.pseudorange_deviation.value());
     return item;
 }
@@ -156,8 +155,8 @@ RxmMeasx code_measurements(const ReportContext& context) {
         if (context.board.identity.generation >= 9 && context.config.has_on(Constellation::galileo))
             m.gal_tow = m.gps_tow;
         m.glo_tow = tow_ms(time + 3h - std::chrono::seconds(state.epoch.fix.leap_seconds));
-        const std::uint16_t accuracy = field<std::uint16_t>(state.time.accuracy.value() * 1e3 * 16);
-        m.gps_tow_acc = m.glo_tow_acc = m.bds_tow_acc = m.qzss_tow_acc = accuracy;
+        m.gps_tow_acc.set(state.time.accuracy.value() * 1e3);
+        m.glo_tow_acc = m.bds_tow_acc = m.qzss_tow_acc = m.gps_tow_acc.raw;
         m.flags = 2;
     }
     const bool b1c = context.config.settings.beidou_b1c;
@@ -170,7 +169,7 @@ RxmMeasx code_measurements(const ReportContext& context) {
 std::uint8_t tracking_channel(SatelliteId id, const Fix& fix) {
     const auto found = std::ranges::find_if(fix.satellites, [&](const auto& s) { return s.id == id; });
     return found == fix.satellites.end() ? std::uint8_t{0}
-                                         : field<std::uint8_t>(static_cast<double>(found - fix.satellites.begin()));
+                                         : nearest<std::uint8_t>(static_cast<double>(found - fix.satellites.begin()));
 }
 
 // Pilots carry no data: I/NAV comes by E1-B and E5b-I, where what is measured is called E1-C and E5b-Q.
@@ -191,8 +190,7 @@ std::vector<Bytes> received_subframes(const ReportContext& context) {
         m.gnss_id = gnss_id(subframe.satellite.constellation);
         m.sv_id = sv_id(subframe.satellite);
         if (context.board.identity.generation > 8) m.sig_id = data_signal_id(subframe, context);
-        if (subframe.satellite.constellation == Constellation::glonass)
-            m.freq_id = field<std::uint8_t>(subframe.frequency_channel + 7);
+        if (subframe.satellite.constellation == Constellation::glonass) m.freq_id.set(subframe.frequency_channel + 7);
         m.chn = tracking_channel(subframe.satellite, context.state.epoch.fix);
         m.version = 2;
         m.words = subframe.words;

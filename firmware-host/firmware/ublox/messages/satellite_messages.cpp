@@ -47,8 +47,8 @@ NavSat satellites_in_view(const ReportContext& context) {
     for (const SatelliteStatus& s : sorted_satellites(context.state.epoch.fix)) {
         const SkyFields sky = sky_fields(s, context.state);
         m.satellites.push_back({gnss_id(s.id.constellation), sv_id(s.id), cn0_field(s.cn0), sky.elevation, sky.azimuth,
-                                s.residual ? field<std::int16_t>(s.residual->value() * 10) : std::int16_t{0},
-                                satellite_flags(s, context)});
+                                0, satellite_flags(s, context)});
+        if (s.residual) m.satellites.back().pr_res.set(s.residual->value());
     }
     return m;
 }
@@ -75,8 +75,8 @@ NavSvinfo channels(const ReportContext& context) {
         const bool tracked = s.cn0.has_value() && channel < no_channel;
         m.channels.push_back({tracked ? channel++ : no_channel, *number, channel_flags(s, context.state),
                               static_cast<std::uint8_t>(satellite_quality(s, context.state)), cn0_field(s.cn0),
-                              sky.elevation, sky.azimuth,
-                              s.residual ? field<std::int32_t>(s.residual->value() * 1e2) : 0});
+                              sky.elevation, sky.azimuth, 0});
+        if (s.residual) m.channels.back().pr_res.set(s.residual->value());
     }
     return m;
 }
@@ -148,7 +148,7 @@ NavSbas augmentation(const ReportContext& context) {
 
 SkyFields sky_fields(const SatelliteStatus& s, const NavigationState& state) {
     if (!direction_known(s, state)) return {};
-    return {field<std::int8_t>(s.elevation.deg()), static_cast<std::int16_t>(std::lround(s.azimuth.deg()) % 360)};
+    return {nearest<std::int8_t>(s.elevation.deg()), static_cast<std::int16_t>(std::lround(s.azimuth.deg()) % 360)};
 }
 
 std::vector<SatelliteStatus> sorted_satellites(const Fix& fix) {
@@ -254,8 +254,8 @@ NavSigItem signal_item(const SignalReport& report, const ReportContext& context)
     item.sv_id = sv_id(s.id);
     item.sig_id = signal_id(s.id, signal, context.config.settings.beidou_b1c);
     item.freq_id = frequency_id(s.id, signal, o != nullptr ? o->carrier : carrier_frequency(signal));
-    if (s.residual) item.pr_res = field<std::int16_t>(s.residual->value() * 10);
-    item.cno = o != nullptr ? field<std::uint8_t>(o->cn0.value()) : cn0_field(s.cn0);
+    if (s.residual) item.pr_res.set(s.residual->value());
+    item.cno = o != nullptr ? nearest<std::uint8_t>(o->cn0.value()) : cn0_field(s.cn0);
     item.quality = o != nullptr ? signal_quality(*o) : static_cast<std::uint8_t>(satellite_quality(s, context.state));
     item.corr_source = correction_source(report, context.state);
     item.iono_model = ionosphere_model(report, context.state);
