@@ -207,7 +207,7 @@ inline std::optional<NavPvt> pvt_of(const HeardMessage& message) {
 /// How far two reported positions lie apart, m.
 inline double apart_m(const NavPvt& a, const NavPvt& b) {
     const auto place = [](const NavPvt& pvt) {
-        return to_ecef(Geodetic::degrees(pvt.lat * 1e-7, pvt.lon * 1e-7, pvt.height * 1e-3));
+        return to_ecef(Geodetic::degrees(pvt.lat.value(), pvt.lon.value(), pvt.height.value()));
     };
     return (place(a) - place(b)).length().value();
 }

@@ -149,9 +149,9 @@ void TlogVehicle::take_attitude(const TlogFrame& frame) {
 void TlogVehicle::take_global(const TlogFrame& frame) {
     const auto message = decode_mavlink<MavlinkGlobalPositionInt>(frame.frame.payload);
     TlogStart* start = start_at(message.time_boot_ms, frame.stamp_us);
-    auto row = flight_row(now_ns_, message.lat * degree_of_1e7, message.lon * degree_of_1e7, message.alt * 1e-3);
+    auto row = flight_row(now_ns_, message.lat.value(), message.lon.value(), message.alt.value());
     if (!start || !row) return;
-    row->velocity_ned = logged_velocity(message.vx * 1e-2, message.vy * 1e-2, message.vz * 1e-2);
+    row->velocity_ned = logged_velocity(message.vx.value(), message.vy.value(), message.vz.value());
     start->global.push_back(*row);
     ++places_;
 }
@@ -159,8 +159,7 @@ void TlogVehicle::take_global(const TlogFrame& frame) {
 void TlogVehicle::take_local(const TlogFrame& frame) {
     if (frame.frame.message == MavlinkGpsGlobalOrigin::message_id) {
         const auto message = decode_mavlink<MavlinkGpsGlobalOrigin>(frame.frame.payload);
-        const GlobalSample told{0, message.latitude * degree_of_1e7, message.longitude * degree_of_1e7,
-                                message.altitude * 1e-3};
+        const GlobalSample told{0, message.latitude.value(), message.longitude.value(), message.altitude.value()};
         if (flight_row(0, told.latitude_deg, told.longitude_deg, told.height_m)) origin_ = told;
         return;
     }
@@ -179,8 +178,8 @@ void TlogVehicle::take_receiver(const TlogFrame& frame) {
     constexpr std::uint8_t fix_2d = 2;
     if (message.fix_type < fix_2d) return;
     const bool above = message.alt_ellipsoid != 0;
-    auto row = flight_row(0, message.lat * degree_of_1e7, message.lon * degree_of_1e7,
-                          (above ? message.alt_ellipsoid : message.alt) * 1e-3);
+    auto row = flight_row(0, message.lat.value(), message.lon.value(),
+                          above ? message.alt_ellipsoid.value() : message.alt.value());
     if (!row) return;
     row->above_sea = !above;
     const auto gps = gps_ns_of_posix_us(static_cast<double>(message.time_usec));
@@ -200,7 +199,7 @@ void TlogVehicle::take_truth(const TlogFrame& frame) {
     double latitude = message.lat, longitude = message.lon;
     if (std::abs(latitude) > 90 || std::abs(longitude) > 360) latitude *= degree_of_1e7, longitude *= degree_of_1e7;
     if (message.lat_int != 0 || message.lon_int != 0)
-        latitude = message.lat_int * degree_of_1e7, longitude = message.lon_int * degree_of_1e7;
+        latitude = message.lat_int.value().value_or(0), longitude = message.lon_int.value().value_or(0);
     auto row = flight_row(gps.value_or(0), latitude, longitude, message.alt);
     if (!gps || !row) return;
     row->velocity_ned = logged_velocity(message.vn, message.ve, message.vd);
@@ -216,11 +215,11 @@ void TlogVehicle::take_hil(const TlogFrame& frame) {
                                                                  : message.time_usec.raw);
     const auto gps = gps_ns_of_posix_us(told);
     const auto ns = gps ? gps : flight_clock_ns(told);
-    auto row = flight_row(ns.value_or(0), message.lat * degree_of_1e7, message.lon * degree_of_1e7, message.alt * 1e-3);
+    auto row = flight_row(ns.value_or(0), message.lat.value(), message.lon.value(), message.alt.value());
     if (!ns || !row) return;
     TlogStart* start = gps ? &latest_start() : start_at(*ns, frame.stamp_us);
     if (!start) return;
-    row->velocity_ned = logged_velocity(message.vx * 1e-2, message.vy * 1e-2, message.vz * 1e-2);
+    row->velocity_ned = logged_velocity(message.vx.value(), message.vy.value(), message.vz.value());
     row->turn = message_turn(message.q);
     start->hil.push_back({*row, gps.has_value()});
     ++places_;

@@ -72,22 +72,22 @@ void SbfEpochs::with(const SbfBlockView& block, Taker&& taker) {
 
 template <class Block>
 void SbfEpochs::take_solution(const Block& pvt) {
-    constexpr std::uint16_t nothing = 0xFFFF;
     ObservedEpoch& epoch = *under_way_;
     epoch.is_solution = true;
     epoch.type = sbf_fix_type(pvt.mode, pvt.error);
     if (pvt.num_sv != 0xFF) epoch.satellites_used = pvt.num_sv;
     take_motion(pvt, epoch);
     const SbfPvtAccuracy* accuracy = accuracy_of(pvt);
-    if (accuracy && accuracy->h_accuracy != nothing) epoch.horizontal_accuracy = Metres(accuracy->h_accuracy * 5e-3);
-    if (accuracy && accuracy->v_accuracy != nothing) epoch.vertical_accuracy = Metres(accuracy->v_accuracy * 5e-3);
+    if (!accuracy) return;
+    if (const auto twice = accuracy->h_accuracy.value()) epoch.horizontal_accuracy = Metres(*twice / 2);
+    if (const auto twice = accuracy->v_accuracy.value()) epoch.vertical_accuracy = Metres(*twice / 2);
 }
 
 SbfEpochs::Taken SbfEpochs::take(const SbfBlockView& block) {
     with<SbfPvtGeodetic>(block, [this](const SbfPvtGeodetic& pvt, ObservedEpoch&) { take_solution(pvt); });
     with<SbfPvtCartesian>(block, [this](const SbfPvtCartesian& pvt, ObservedEpoch&) { take_solution(pvt); });
     with<SbfDop>(block, [](const SbfDop& dop, ObservedEpoch& epoch) {
-        if (dop.hdop != 0) epoch.hdop = dop.hdop * 1e-2;
+        if (const auto hdop = dop.hdop.value()) epoch.hdop = hdop;
     });
     with<SbfAttEuler>(block, [](const SbfAttEuler& attitude, ObservedEpoch& epoch) {
         if (attitude.error == 0 && says(attitude.heading) && says(attitude.pitch) && says(attitude.roll))
@@ -100,34 +100,34 @@ SbfEpochs::Taken SbfEpochs::take(const SbfBlockView& block) {
 
 // Elevations come at another rate than the strengths.
 void SbfEpochs::take_satellites(const SbfBlockView& block) {
-    const auto stands_at = [this](std::uint8_t svid, double elevation_deg) {
-        if (const auto id = satellite_from_sbf(svid); id && std::abs(elevation_deg) <= 90)
-            elevations_.emplace_back(*id, static_cast<int>(std::lround(elevation_deg)));
+    const auto stands_at = [this](std::uint8_t svid, std::optional<double> elevation_deg) {
+        if (const auto id = satellite_from_sbf(svid); id && elevation_deg && std::abs(*elevation_deg) <= 90)
+            elevations_.emplace_back(*id, static_cast<int>(std::lround(*elevation_deg)));
     };
     with<SbfChannelStatus>(block, [&](const SbfChannelStatus& status, ObservedEpoch&) {
         elevations_.clear();
         for (const SbfChannel& channel : status.channels)
-            stands_at(channel.svid, channel.elevation);
+            stands_at(channel.svid, channel.elevation.value());
     });
     with<SbfSatVisibility>(block, [&](const SbfSatVisibility& sky, ObservedEpoch&) {
         elevations_.clear();
         for (const SbfVisibleSatellite& satellite : sky.satellites)
-            stands_at(satellite.svid, satellite.elevation * 1e-2);
+            stands_at(satellite.svid, satellite.elevation.value());
     });
     with<SbfMeasEpoch>(block, [this](const SbfMeasEpoch& measured, ObservedEpoch& epoch) {
         epoch.lists_satellites = true;
-        const auto add = [&](std::uint8_t svid, std::uint8_t cn0, std::uint8_t type, bool first) {
+        const auto add = [&](std::uint8_t svid, std::optional<double> cn0, std::uint8_t type, bool first) {
             // GPS P(Y) and a signal beyond 30 begin elsewhere; the strengths of P(Y) have no 10 added (4.2.1).
             const bool precise = (type & 31u) == 1 || (type & 31u) == 2;
             const auto id = satellite_from_sbf(svid);
-            if (id && cn0 != 0xFF)
+            if (id && cn0)
                 add_signal(epoch.signals,
-                           {*id, cn0 * 0.25 + (precise ? 0 : 10), {}, every_signal_ && !first ? 1 + (type & 31) : 0});
+                           {*id, *cn0 + (precise ? 0 : 10), {}, every_signal_ && !first ? 1 + (type & 31) : 0});
         };
         for (const SbfMeasuredSatellite& satellite : measured.satellites) {
-            add(satellite.svid, satellite.cn0, satellite.type, true);
+            add(satellite.svid, satellite.cn0.value(), satellite.type, true);
             for (const SbfOtherSignal& other : satellite.others)
-                add(satellite.svid, other.cn0, other.type, false);
+                add(satellite.svid, other.cn0.value(), other.type, false);
         }
     });
 }

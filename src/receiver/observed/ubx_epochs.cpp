@@ -48,13 +48,13 @@ std::optional<std::int64_t> told_week(const Message& m) {
     return week_of_date({m.year, m.month, m.day, m.hour, m.minute, m.second, 0}, std::chrono::milliseconds(m.i_tow));
 }
 
-// Roll, pitch and heading in 1e-5 degrees; nothing for what are no such angles.
-std::optional<Attitude> ubx_attitude(const std::array<std::int32_t, 3>& angle) {
-    constexpr std::int32_t whole_turn = 36'000'000;
-    for (const std::int32_t one : angle)
-        if (one < -whole_turn || one > whole_turn) return std::nullopt;
-    const auto degrees = [](std::int32_t value) { return Angle::degrees(value * 1e-5); };
-    return Attitude::roll_pitch_yaw(degrees(angle[0]), degrees(angle[1]), degrees(angle[2]));
+// Roll, pitch and heading; nothing for what are no such angles.
+template <class Angles>
+std::optional<Attitude> ubx_attitude(const Angles& angles) {
+    for (std::size_t i = 0; i < angles.size(); ++i)
+        if (std::abs(angles.value(i)) > 360) return std::nullopt;
+    const auto degrees = [&](std::size_t i) { return Angle::degrees(angles.value(i)); };
+    return Attitude::roll_pitch_yaw(degrees(0), degrees(1), degrees(2));
 }
 
 // Seconds since 1970 of NAV-PVT, NAV-PVAT and NAV-TIMEUTC, whose nanoseconds may be negative.
@@ -94,9 +94,9 @@ void UbxEpochs::UnderWay::take_solution(const Message& m, const VelocityNed& vel
     if ((m.valid & resolved) == resolved) told.utc_s = told_utc(m);
     told.velocity = velocity;
     told.satellites_used = m.num_sv;
-    told.horizontal_accuracy = Metres(m.h_acc * 1e-3);
-    told.vertical_accuracy = Metres(m.v_acc * 1e-3);
-    told.speed_accuracy = MetresPerSecond(m.s_acc * 1e-3);
+    told.horizontal_accuracy = Metres(m.h_acc.value());
+    told.vertical_accuracy = Metres(m.v_acc.value());
+    told.speed_accuracy = MetresPerSecond(m.s_acc.value());
 }
 
 void UbxEpochs::UnderWay::take_week(std::int64_t number) {
@@ -125,13 +125,13 @@ void UbxEpochs::with(const UbxFrameView& frame, unsigned part, Taker&& taker) {
 
 UbxEpochs::Taken UbxEpochs::take(const UbxFrameView& frame) {
     with<NavPvt>(frame, says_solution, [](const NavPvt& m, UnderWay& e) {
-        e.take_solution(m, {m.vel_n * 1e-3, m.vel_e * 1e-3, m.vel_d * 1e-3});
-        if ((m.flags3 & 1u) == 0) e.take_place(3, m.lat * 1e-7, m.lon * 1e-7, m.height * 1e-3);
+        e.take_solution(m, {m.vel_n.value(), m.vel_e.value(), m.vel_d.value()});
+        if ((m.flags3 & 1u) == 0) e.take_place(3, m.lat.value(), m.lon.value(), m.height.value());
     });
     with<NavPvat>(frame, says_solution, [](const NavPvat& m, UnderWay& e) {
         constexpr unsigned whole_attitude = 0x1C;
-        e.take_solution(m, {m.vel_ned[0] * 1e-3, m.vel_ned[1] * 1e-3, m.vel_ned[2] * 1e-3});
-        e.take_place(3, m.lat * 1e-7, m.lon * 1e-7, m.height * 1e-3);
+        e.take_solution(m, {m.vel_ned.value(0), m.vel_ned.value(1), m.vel_ned.value(2)});
+        e.take_place(3, m.lat.value(), m.lon.value(), m.height.value());
         if ((m.flags & whole_attitude) == whole_attitude) e.told.attitude = ubx_attitude(m.angle);
     });
     take_positions(frame);
@@ -147,27 +147,27 @@ void UbxEpochs::take_positions(const UbxFrameView& frame) {
         e.take_type(2, ubx_fix_type(m.gps_fix, m.flags, 0));
         if ((m.flags & 4u) != 0 && !e.week) e.take_week(m.week);
         if (!e.told.satellites_used) e.told.satellites_used = m.num_sv;
-        const Position<Ecef> point(m.ecef[0] * 1e-2, m.ecef[1] * 1e-2, m.ecef[2] * 1e-2);
+        const Position<Ecef> point(m.ecef.value(0), m.ecef.value(1), m.ecef.value(2));
         if (point.vector().norm() <= deepest_m) return;
         const Geodetic there = to_geodetic(point);
         e.take_place(1, there.latitude.deg(), there.longitude.deg(), there.height.above_ellipsoid.value());
     });
     with<NavPosllh>(frame, says_place, [](const NavPosllh& m, UnderWay& e) {
-        e.take_place(2, m.lat * 1e-7, m.lon * 1e-7, m.height * 1e-3);
+        e.take_place(2, m.lat.value(), m.lon.value(), m.height.value());
         if (e.told.horizontal_accuracy) return;
-        e.told.horizontal_accuracy = Metres(m.h_acc * 1e-3);
-        e.told.vertical_accuracy = Metres(m.v_acc * 1e-3);
+        e.told.horizontal_accuracy = Metres(m.h_acc.value());
+        e.told.vertical_accuracy = Metres(m.v_acc.value());
     });
     with<NavHpposllh>(frame, says_precise_place, [](const NavHpposllh& m, UnderWay& e) {
         e.told.is_solution = true;
         if ((m.flags & 1u) == 0)
-            e.take_place(4, m.lat * 1e-7 + m.lat_hp * 1e-9, m.lon * 1e-7 + m.lon_hp * 1e-9,
-                         m.height * 1e-3 + m.height_hp * 1e-4);
+            e.take_place(4, m.lat.value() + m.lat_hp.value(), m.lon.value() + m.lon_hp.value(),
+                         m.height.value() + m.height_hp.value());
     });
     with<NavVelned>(frame, says_velocity, [](const NavVelned& m, UnderWay& e) {
         if (e.told.velocity) return;
-        e.told.velocity = VelocityNed{m.vel_n * 1e-2, m.vel_e * 1e-2, m.vel_d * 1e-2};
-        e.told.speed_accuracy = MetresPerSecond(m.s_acc * 1e-2);
+        e.told.velocity = VelocityNed{m.vel_n.value(), m.vel_e.value(), m.vel_d.value()};
+        e.told.speed_accuracy = MetresPerSecond(m.s_acc.value());
     });
     // An accuracy of zero comes before the fusion has begun.
     with<NavAtt>(frame, 0, [](const NavAtt& m, UnderWay& e) {

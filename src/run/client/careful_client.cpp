@@ -309,7 +309,7 @@ void CarefulUbxClient::hear_time(ByteSpan payload) {
     gps_time_.reset();
     const auto time = decode_payload<NavTimegps>(payload);
     if (time && (time->valid & 3u) == 3)
-        gps_time_ = GpsTimeHeard{time->i_tow, time->week * 604800.0 + time->i_tow * 1e-3};
+        gps_time_ = GpsTimeHeard{time->i_tow, time->week * 604800.0 + time->i_tow.value()};
 }
 
 void CarefulUbxClient::hear_solution(const ObservedEpoch& epoch) {

@@ -61,20 +61,22 @@ std::optional<Nanoseconds> time_of_microseconds(std::uint64_t count) {
 
 Nanoseconds time_of_boot(std::uint32_t milliseconds) { return Nanoseconds(std::int64_t{milliseconds} * 1'000'000); }
 
-// Centimetres a second in 16 bits; at their end the vehicle may be faster, and the message tells nothing.
-std::optional<Eigen::Vector3d> velocity_of_centimetres(std::int16_t north, std::int16_t east, std::int16_t down) {
+// At the end of 16 bits the vehicle may be faster, and the message tells nothing.
+template <class Message>
+std::optional<Eigen::Vector3d> velocity_of_integers(const Message& message) {
     constexpr int most = std::numeric_limits<std::int16_t>::max();
-    if (std::abs(int{north}) >= most || std::abs(int{east}) >= most || std::abs(int{down}) >= most) return std::nullopt;
-    return Eigen::Vector3d(north, east, down) * 0.01;
+    for (const int speed : {+message.vx, +message.vy, +message.vz})
+        if (std::abs(speed) >= most) return std::nullopt;
+    return Eigen::Vector3d(message.vx.value(), message.vy.value(), message.vz.value());
 }
 
 template <class Message>
 SourcePose pose_of_integers(const Message& message) {
     SourcePose pose;
-    pose.latitude_deg = message.lat * 1e-7;
-    pose.longitude_deg = message.lon * 1e-7;
-    pose.height_m = message.alt * 1e-3;
-    pose.velocity_ned = velocity_of_centimetres(message.vx, message.vy, message.vz);
+    pose.latitude_deg = message.lat.value();
+    pose.longitude_deg = message.lon.value();
+    pose.height_m = message.alt.value();
+    pose.velocity_ned = velocity_of_integers(message);
     return pose;
 }
 
@@ -190,8 +192,8 @@ SampleOr MavlinkVehicleTruth::of_sim_state(const MavlinkSimState& message) const
     const bool integers = has_integers(message);
     const bool scaled = std::abs(message.lat) > 90 || std::abs(message.lon) > 360;
     const double unit = scaled ? 1e-7 : 1;
-    pose.latitude_deg = integers ? message.lat_int * 1e-7 : double{message.lat} * unit;
-    pose.longitude_deg = integers ? message.lon_int * 1e-7 : double{message.lon} * unit;
+    pose.latitude_deg = integers ? message.lat_int.value().value_or(0) : double{message.lat} * unit;
+    pose.longitude_deg = integers ? message.lon_int.value().value_or(0) : double{message.lon} * unit;
     pose.height_m = message.alt;
     pose.velocity_ned = Eigen::Vector3d(message.vn, message.ve, message.vd);
     pose.attitude = attitude_of_floats(message.q);
@@ -256,9 +258,9 @@ void MavlinkVehicleTruth::take_attitude(const std::optional<Attitude>& attitude,
 
 void MavlinkVehicleTruth::take_origin(const MavlinkGpsGlobalOrigin& message) {
     SourcePose pose;
-    pose.latitude_deg = message.latitude * 1e-7;
-    pose.longitude_deg = message.longitude * 1e-7;
-    pose.height_m = message.altitude * 1e-3;
+    pose.latitude_deg = message.latitude.value();
+    pose.longitude_deg = message.longitude.value();
+    pose.height_m = message.altitude.value();
     if (const SampleOr place = sample_of(pose, context_)) context_.origin = to_geodetic(place->position);
 }
 

@@ -158,7 +158,7 @@ public:
     [[nodiscard]] GpsTime now() const { return now_; }
     /// Where NAV-PVT says that it is, against the true place: metres east, north, up.
     static Position<Enu> error(const NavPvt& pvt) {
-        const Geodetic told = Geodetic::degrees(pvt.lat * 1e-7, pvt.lon * 1e-7, pvt.height * 1e-3);
+        const Geodetic told = Geodetic::degrees(pvt.lat.value(), pvt.lon.value(), pvt.height.value());
         return LocalFrame(Geodetic::degrees(latitude, longitude, height_m)).to_enu(to_ecef(told));
     }
 
