@@ -38,6 +38,19 @@ std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& conte
     }
 }
 
+bool makes_nothing_of(UbxMessageId message) {
+    // RXM-SPARTN, RXM-RLM, RXM-IMES, TIM-TM2, TIM-VRFY, LOG-INFO, RTCM 4072.1 and 4072.0.
+    constexpr std::array<UbxMessageId, 8> nothing{{{0x02, 0x33},
+                                                   {0x02, 0x59},
+                                                   {0x02, 0x61},
+                                                   {0x0D, 0x03},
+                                                   {0x0D, 0x06},
+                                                   {0x21, 0x08},
+                                                   {0xF5, 0xFD},
+                                                   {0xF5, 0xFE}}};
+    return std::find(nothing.begin(), nothing.end(), message) != nothing.end();
+}
+
 const std::vector<Bytes>& EpochMessages::of(UbxMessageId message, PortId port,
                                             std::span<const UbxMessageId> following) {
     const auto [entry, is_new] = made_.try_emplace(message);

@@ -23,6 +23,10 @@ namespace skyloop::firmware {
 /// when there is nothing to say, or the message is not known. Classes F0, F1 and F5 are NMEA, PUBX and RTCM.
 std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& context);
 
+/// Whether make_message() has nothing of a message that boards have a rate for: nothing that it would report happens
+/// here.
+bool makes_nothing_of(UbxMessageId message);
+
 /// The messages of one epoch: each is made once, however many ports send it, and what sentences share as well.
 class EpochMessages {
 public:

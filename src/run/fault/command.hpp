@@ -55,8 +55,9 @@ struct CommandKind {
     std::string_view name{};     ///< "move_to"
     std::string_view meaning{};  ///< a sentence
     ParameterList parameters{};
-    bool live_only = false;    ///< nothing in virtual time
-    bool of_receiver = false;  ///< may be for one receiver alone
+    bool live_only = false;              ///< nothing in virtual time
+    bool of_receiver = false;            ///< may be for one receiver alone
+    const ReceiverNeed* need = nullptr;  ///< nothing comes of it at a receiver that lacks this
 };
 std::span<const CommandKind> command_kinds();
 const CommandKind* find_command_kind(std::string_view name);

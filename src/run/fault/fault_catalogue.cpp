@@ -26,6 +26,52 @@ const FaultKind* find_fault_kind(std::string_view name) {
     return found == kinds.end() ? nullptr : &*found;
 }
 
+namespace {
+
+std::string lacking(const UsedReceiver& receiver, std::string_view lack) {
+    return fmt::format("{} {}", receiver.board.name, lack);
+}
+
+// Words and texts of a parameter; none of one that is neither.
+std::vector<std::string> values_of(const ParameterSpec& spec, const Parameters& parameters) {
+    const bool single = spec.type == ParameterType::word || spec.type == ParameterType::text;
+    if (!single) return parameters.texts(spec.name);
+    const std::string text = parameters.text(spec.name);
+    return text.empty() ? std::vector<std::string>() : std::vector{text};
+}
+
+// Whether it is there and not as it would be by itself.
+bool is_changed(const ParameterSpec& spec, const Parameters& parameters) {
+    const auto given = parameters.values().find(spec.name);
+    return given != parameters.values().end() && given->second != spec.standard_value();
+}
+
+}  // namespace
+
+IdleParts idle_parts(const FaultKind& kind, const Parameters& parameters, const UsedReceiver& receiver) {
+    IdleParts idle;
+    if (kind.need != nullptr && !kind.need->met(receiver)) {
+        idle.whole = lacking(receiver, kind.need->lack);
+        return idle;
+    }
+    for (const ParameterSpec& spec : kind.parameters) {
+        if (spec.need != nullptr && is_changed(spec, parameters) && !spec.need->met(receiver))
+            idle.parts.push_back({spec.name, {}, lacking(receiver, spec.need->lack)});
+        if (spec.idle_value == nullptr) continue;
+        const std::vector<std::string> values = values_of(spec, parameters);
+        std::vector<IdlePart> of_this;
+        for (const std::string& value : values)
+            if (const std::string why = spec.idle_value(receiver, value); !why.empty())
+                of_this.push_back({spec.name, value, lacking(receiver, why)});
+        if (!of_this.empty() && of_this.size() == values.size()) {
+            idle.whole = of_this.front().why;
+            return idle;
+        }
+        idle.parts.insert(idle.parts.end(), of_this.begin(), of_this.end());
+    }
+    return idle;
+}
+
 std::vector<ParameterMistake> ramp_mistakes(const FaultKind& kind, const Parameters& values) {
     std::vector<ParameterMistake> mistakes;
     for (const char* key : {"ramp_in_s", "ramp_out_s"})

@@ -18,6 +18,7 @@
 #include "base/core/result.hpp"
 #include "firmware/core/firmware_faults.hpp"
 #include "run/fault/parameters.hpp"
+#include "run/fault/receiver_needs.hpp"
 #include "run/fault/wire_damage.hpp"
 #include "world/flow/observations.hpp"
 #include "world/flow/trace.hpp"
@@ -122,6 +123,14 @@ struct FaultKind {
     bool measuring_receivers_only = false;  ///< nothing to see with a sensor model, which measures nothing
     bool has_strength = true;               ///< it can be there in part, and so grow and fade along ramps
     FaultLayer layer = FaultLayer::signals;
+    const ReceiverNeed* need = nullptr;  ///< nothing comes of it at a receiver that lacks this
+
+    /// The same, with that need.
+    [[nodiscard]] constexpr FaultKind that_needs(const ReceiverNeed& of_receiver) const {
+        FaultKind kind = *this;
+        kind.need = &of_receiver;
+        return kind;
+    }
 };
 
 // What rows of tables of kinds say of themselves.
@@ -131,6 +140,20 @@ inline constexpr bool of_measurements = true, with_strength = true;
 const std::vector<FaultKind>& fault_kinds();
 /// The one of that name, or null.
 const FaultKind* find_fault_kind(std::string_view name);
+
+/// A value of a parameter, or a parameter, of which nothing comes.
+struct IdlePart {
+    std::string_view parameter{};
+    std::string value{};  ///< of a list or a word; else empty
+    std::string why{};    ///< "ublox-m9 never sends THS"
+};
+/// What of a fault comes to nothing at a receiver.
+struct IdleParts {
+    std::string whole{};  ///< why all of it does; empty: something comes of it
+    std::vector<IdlePart> parts{};
+};
+/// By the needs of the kind and of its parameters. @param parameters checked
+IdleParts idle_parts(const FaultKind& kind, const Parameters& parameters, const UsedReceiver& receiver);
 
 /// What is wrong with the ramps of a fault of this kind: what is there or not, cannot have any.
 /// @param values `ramp_in_s` and `ramp_out_s` among them

@@ -63,10 +63,14 @@ constexpr std::array<std::string_view, 4> layer_headings{"Signals: what reaches 
                                                          "Solution: what the receiver believes or reports",
                                                          "Receiver: how it behaves", "Wire: what becomes of the bytes"};
 
+std::string idle_at(const ReceiverNeed* need) {
+    return need == nullptr ? std::string() : fmt::format(" (Idle where the receiver {}.)", need->lack);
+}
+
 // What the kind cannot do.
 std::string bounds_of(const FaultKind& kind, std::string_view modern) {
-    return fmt::format("{}{}", kind.measuring_receivers_only ? fmt::format(" ({} only.)", modern) : "",
-                       kind.has_strength ? "" : " (No ramps.)");
+    return fmt::format("{}{}{}", kind.measuring_receivers_only ? fmt::format(" ({} only.)", modern) : "",
+                       kind.has_strength ? "" : " (No ramps.)", idle_at(kind.need));
 }
 
 std::string kinds_markdown() {
@@ -85,8 +89,9 @@ std::string kinds_markdown() {
 std::string commands_markdown() {
     std::string page = "## Commands\n\n";
     for (const CommandKind& kind : command_kinds())
-        page += fmt::format("### {}\n\n{}{}{}\n\n{}", kind.name, kind.meaning, kind.live_only ? " Of live runs." : "",
-                            kind.of_receiver ? " Takes `receiver`." : "", parameter_table(kind.parameters));
+        page += fmt::format("### {}\n\n{}{}{}{}\n\n{}", kind.name, kind.meaning, kind.live_only ? " Of live runs." : "",
+                            kind.of_receiver ? " Takes `receiver`." : "", idle_at(kind.need),
+                            parameter_table(kind.parameters));
     return page;
 }
 

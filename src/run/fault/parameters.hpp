@@ -14,6 +14,7 @@
 
 #include "base/core/result.hpp"
 #include "base/geo/geodetic.hpp"
+#include "run/fault/receiver_needs.hpp"
 
 namespace skyloop::inline run {
 
@@ -51,16 +52,34 @@ struct ParameterSpec {
     double least = -unlimited, most = unlimited;          ///< of numbers
     std::size_t count_least = 0, count_most = any_count;  ///< of lists
     std::span<const std::string_view> choices{};          ///< of `word` and `words`
+    const ReceiverNeed* need = nullptr;                   ///< of a receiver where it differs from its standard
+    IdleValue idle_value = nullptr;  ///< of each word or text; where all of them are idle, so is the whole fault
 
     [[nodiscard]] std::optional<ParameterValue> standard_value() const;
 
     /// The same, absent unless given.
     [[nodiscard]] constexpr ParameterSpec without_standard() const {
-        return {name, type, meaning, {}, needed, least, most, count_least, count_most, choices};
+        ParameterSpec spec = *this;
+        spec.standard = {};
+        return spec;
     }
     /// The same, one that must be given.
     [[nodiscard]] constexpr ParameterSpec that_is_needed() const {
-        return {name, type, meaning, {}, true, least, most, count_least, count_most, choices};
+        ParameterSpec spec = without_standard();
+        spec.needed = true;
+        return spec;
+    }
+    /// The same, of which nothing comes at a receiver that lacks this.
+    [[nodiscard]] constexpr ParameterSpec that_needs(const ReceiverNeed& of_receiver) const {
+        ParameterSpec spec = *this;
+        spec.need = &of_receiver;
+        return spec;
+    }
+    /// The same, of whose values this says which come to nothing.
+    [[nodiscard]] constexpr ParameterSpec judged_by(IdleValue judge) const {
+        ParameterSpec spec = *this;
+        spec.idle_value = judge;
+        return spec;
     }
 };
 

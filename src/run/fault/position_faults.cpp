@@ -230,11 +230,13 @@ constexpr auto motion_and_quality_kinds = std::to_array<FaultKind>(
      {"velocity_bias", "The velocity lies off by a constant vector; the position stays right.",
       "Doppler shifts of reflected signals, or a filter tuned for another vehicle.",
       velocity_parameters("north, m/s; 2 when none of the three is given, else 0"), make_velocity_bias},
-     {"accuracy_scale",
-      "The accuracies that the receiver tells of itself are too small, or too large.",
-      "Receivers estimate their accuracy from residuals, which reflected signals need not raise.",
-      {number_parameter("factor", 0.1, 0.001, 1000, "times the estimates; below 1 optimistic, above 1 pessimistic")},
-      make_accuracy_scale}});
+     FaultKind{
+         "accuracy_scale",
+         "The accuracies that the receiver tells of itself are too small, or too large.",
+         "Receivers estimate their accuracy from residuals, which reflected signals need not raise.",
+         {number_parameter("factor", 0.1, 0.001, 1000, "times the estimates; below 1 optimistic, above 1 pessimistic")},
+         make_accuracy_scale}
+         .that_needs(accuracy_report)});
 
 }  // namespace
 

@@ -240,16 +240,18 @@ constexpr auto rtk_kinds = std::to_array<FaultKind>(
       make_rtk_transition}});
 
 constexpr auto pair_and_count_kinds = without_strength(std::to_array<FaultKind>(
-    {{"heading_lost",
-      "The vector between the antennas of a pair is gone.",
-      "One of the two antennas is shaded, or its corrections do not arrive.",
-      {},
-      make_heading_lost},
-     {"heading_flipped",
-      "The vector between the antennas of a pair points the other way.",
-      "Ambiguities fixed to wrong numbers on a short baseline, or antennas connected the wrong way round.",
-      {},
-      make_heading_flipped},
+    {FaultKind{"heading_lost",
+               "The vector between the antennas of a pair is gone.",
+               "One of the two antennas is shaded, or its corrections do not arrive.",
+               {},
+               make_heading_lost}
+         .that_needs(heading_report),
+     FaultKind{"heading_flipped",
+               "The vector between the antennas of a pair points the other way.",
+               "Ambiguities fixed to wrong numbers on a short baseline, or antennas connected the wrong way round.",
+               {},
+               make_heading_flipped}
+         .that_needs(heading_report),
      {"satellites_misreported",
       "The number of satellites in use is told wrong.",
       "Counts of signals instead of satellites, or of what is in view.",

@@ -140,6 +140,37 @@ void ChosenSatellites::choose(const Observations& observations, const SkyView* s
     take_highest(std::move(candidates));
 }
 
+namespace {
+
+bool tracks(const UsedReceiver& receiver, std::optional<Constellation> system, std::optional<Signal> signal) {
+    const auto& tracked = receiver.settings.signals;
+    if (!receiver.measures || tracked.empty()) return true;
+    return std::any_of(tracked.begin(), tracked.end(), [&](const SystemSignal& one) {
+        return (!system || one.constellation == *system) && (!signal || one.signal == *signal);
+    });
+}
+
+std::string untracked(bool tracked, std::string_view name) {
+    return tracked ? std::string() : fmt::format("does not track {} as the run starts", name);
+}
+
+}  // namespace
+
+std::string why_untracked_system(const UsedReceiver& receiver, std::string_view name) {
+    return untracked(tracks(receiver, constellation_from_name(name), {}), name);
+}
+
+std::string why_untracked_satellite(const UsedReceiver& receiver, std::string_view name) {
+    const auto satellite = parse_satellite(name);
+    return untracked(!satellite || tracks(receiver, satellite->constellation, {}), name);
+}
+
+std::string why_untracked_signal(const UsedReceiver& receiver, std::string_view name) {
+    const auto* const found = std::find(signal_names.begin(), signal_names.end(), name);
+    if (found == signal_names.end()) return {};
+    return untracked(tracks(receiver, {}, static_cast<Signal>(found - signal_names.begin())), name);
+}
+
 bool ChosenSatellites::has(SatelliteId satellite) const { return contains(satellites_, satellite); }
 
 }  // namespace skyloop::inline run

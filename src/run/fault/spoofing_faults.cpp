@@ -276,15 +276,16 @@ constexpr auto spoofing_kinds = std::to_array<FaultKind>({
                    advantage_parameter, detected_after_parameter} +
          chosen_satellites,
      make_spoof_satellite, of_measurements},
-    {"spoof_flapping",
-     "The receiver's spoofing indication comes and goes while nothing is wrong with the signals.",
-     "A detector at its threshold near reflecting roofs or a repeater (PX4 #21244).",
-     {number_parameter("period_s", 4, 0.05, 3600, "s from one indication to the next"),
-      number_parameter("duty", 0.5, 0.001, 0.999, "of the period, for which it indicates"),
-      word_parameter("indication", "indicated", indications, "what it says")},
-     make_spoof_flapping,
-     !of_measurements,
-     !with_strength},
+    FaultKind{"spoof_flapping",
+              "The receiver's spoofing indication comes and goes while nothing is wrong with the signals.",
+              "A detector at its threshold near reflecting roofs or a repeater (PX4 #21244).",
+              {number_parameter("period_s", 4, 0.05, 3600, "s from one indication to the next"),
+               number_parameter("duty", 0.5, 0.001, 0.999, "of the period, for which it indicates"),
+               word_parameter("indication", "indicated", indications, "what it says")},
+              make_spoof_flapping,
+              !of_measurements,
+              !with_strength}
+        .that_needs(spoofing_report),
 });
 
 }  // namespace

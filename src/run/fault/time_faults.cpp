@@ -123,52 +123,62 @@ Result<Fault> make_date_unknown(const Parameters& parameters, const FaultContext
 constexpr std::string_view leap_second_changes[] = {"inserted", "deleted"};
 
 constexpr auto calendar_kinds = without_strength(std::to_array<FaultKind>(
-    {{"leap_second_wrong",
-      "The receiver believes a wrong number of leap seconds, and its UTC is off by as much.",
-      "A cold start: firmware counts by the number of its making until the satellites have told theirs.",
-      {whole_number_parameter("error_s", -2, -30, 30, "too many leap seconds, s"),
-       flag_parameter("declared_valid", false, "it says that the number was decoded")},
-      make_leap_second_wrong},
-     {"leap_second_event",
-      "A leap second comes at the end of the UTC day; NAV-TIMELS announces it from the start of the fault.",
-      "The IERS: the last was at the end of 2016, and clients' code for it is seldom run.",
-      {word_parameter("change", "inserted", leap_second_changes, "23:59:60 is counted, or 23:59:59 is not")},
-      make_leap_second_event},
-     {"week_rollover",
-      "Dates lie 1024 weeks back; the time of week is right. Refused where that leads to before 1980-01-06.",
-      "The ten bits of the week number: firmware resolves them about the date of its making.",
-      {whole_number_parameter("rollovers", 1, 1, 2, "times 1024 weeks")},
-      make_week_rollover},
-     {"week_order",
-      "At the end of the week the week number changes after the time of week has begun anew, or before: of each "
-      "time scale (GPS, Galileo, BeiDou, UTC) where its own week ends.",
-      "Week and time of week come in messages of different rates (ArduPilot #31914).",
-      {number_parameter("lag_s", 2, -3600, 3600, "week number after time of week, s; below 0 before")},
-      make_week_order}}));
+    {FaultKind{"leap_second_wrong",
+               "The receiver believes a wrong number of leap seconds, and its UTC is off by as much.",
+               "A cold start: firmware counts by the number of its making until the satellites have told theirs.",
+               {whole_number_parameter("error_s", -2, -30, 30, "too many leap seconds, s"),
+                flag_parameter("declared_valid", false, "it says that the number was decoded")},
+               make_leap_second_wrong}
+         .that_needs(time_report),
+     FaultKind{"leap_second_event",
+               "A leap second comes at the end of the UTC day; NAV-TIMELS announces it from the start of the fault.",
+               "The IERS: the last was at the end of 2016, and clients' code for it is seldom run.",
+               {word_parameter("change", "inserted", leap_second_changes, "23:59:60 is counted, or 23:59:59 is not")},
+               make_leap_second_event}
+         .that_needs(calendar_report),
+     FaultKind{"week_rollover",
+               "Dates lie 1024 weeks back; the time of week is right. Refused where that leads to before 1980-01-06.",
+               "The ten bits of the week number: firmware resolves them about the date of its making.",
+               {whole_number_parameter("rollovers", 1, 1, 2, "times 1024 weeks")},
+               make_week_rollover}
+         .that_needs(time_report),
+     FaultKind{
+         "week_order",
+         "At the end of the week the week number changes after the time of week has begun anew, or before: of each "
+         "time scale (GPS, Galileo, BeiDou, UTC) where its own week ends.",
+         "Week and time of week come in messages of different rates (ArduPilot #31914).",
+         {number_parameter("lag_s", 2, -3600, 3600, "week number after time of week, s; below 0 before")},
+         make_week_order}
+         .that_needs(week_report)}));
 
 constexpr auto clock_kinds = std::to_array<FaultKind>(
-    {{"time_step",
-      "The time jumps by a constant; the solution stays. Before 1980-01-06 there is no time: it stands still there.",
-      "False signals that carry another time, or a clock that was set wrong after a restart.",
-      {number_parameter("step_s", 3600, -1e9, 1e9, "later than the true time, s")},
-      make_time_step},
-     {"time_backwards",
-      "The time runs backwards from the start of the fault on.",
-      "Recorded signals that are sent again, and firmware that corrects its clock in the wrong direction.",
-      {number_parameter("rate", 1, 0.001, 100, "how fast, s per s")},
-      make_time_backwards},
-     {"time_drift",
-      "The time runs away from the true one; epochs keep their rate.",
-      "A receiver that has lost its satellites and counts by its crystal, or false signals.",
-      {number_parameter("ppm", 1000, -500'000, 500'000, "how much faster, 1e-6")},
-      make_time_drift}});
+    {FaultKind{
+         "time_step",
+         "The time jumps by a constant; the solution stays. Before 1980-01-06 there is no time: it stands still there.",
+         "False signals that carry another time, or a clock that was set wrong after a restart.",
+         {number_parameter("step_s", 3600, -1e9, 1e9, "later than the true time, s")},
+         make_time_step}
+         .that_needs(time_report),
+     FaultKind{"time_backwards",
+               "The time runs backwards from the start of the fault on.",
+               "Recorded signals that are sent again, and firmware that corrects its clock in the wrong direction.",
+               {number_parameter("rate", 1, 0.001, 100, "how fast, s per s")},
+               make_time_backwards}
+         .that_needs(time_report),
+     FaultKind{"time_drift",
+               "The time runs away from the true one; epochs keep their rate.",
+               "A receiver that has lost its satellites and counts by its crystal, or false signals.",
+               {number_parameter("ppm", 1000, -500'000, 500'000, "how much faster, 1e-6")},
+               make_time_drift}
+         .that_needs(time_report)});
 
 constexpr auto unknown_time_kinds = without_strength(std::to_array<FaultKind>(
-    {{"date_unknown",
-      "Date and week are told to be unknown while there is a fix.",
-      "A receiver that has a fix before it has heard the week, as after a hot start without its clock.",
-      {flag_parameter("time_too", false, "the time of day and of the week is unknown as well")},
-      make_date_unknown}}));
+    {FaultKind{"date_unknown",
+               "Date and week are told to be unknown while there is a fix.",
+               "A receiver that has a fix before it has heard the week, as after a hot start without its clock.",
+               {flag_parameter("time_too", false, "the time of day and of the week is unknown as well")},
+               make_date_unknown}
+         .that_needs(time_report)}));
 
 }  // namespace
 

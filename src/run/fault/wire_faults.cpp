@@ -22,9 +22,15 @@ using WireWorsening = std::function<void(WireDirection&, const FaultMoment&)>;
 void combine(double& probability, double with) { probability = 1 - (1 - probability) * (1 - with); }
 
 constexpr std::string_view wire_directions[] = {"to_client", "to_receiver", "both"};
+// What a receiver without commands does not read may be lost.
+std::string why_unread(const UsedReceiver& receiver, std::string_view direction) {
+    return direction == "to_receiver" && !takes_commands(receiver) ? std::string(command_input.lack) : std::string();
+}
+
 constexpr ParameterSpec wire_direction =
     word_parameter("direction", "to_client", wire_directions,
-                   "which bytes: those of the receiver to its client, those of the client, or both");
+                   "which bytes: those of the receiver to its client, those of the client, or both")
+        .judged_by(why_unread);
 
 Fault worsened(const Parameters& parameters, WireWorsening worsen) {
     const std::string direction = parameters.text("direction");
@@ -203,16 +209,18 @@ constexpr auto switched_wire_kinds = without_strength(std::to_array<FaultKind>({
                      "how it starts afterwards: cold without a backup battery, and "
                      "settings saved in battery-backed memory are lost then, those in flash are not")},
      make_power_cut},
-    {"speed_mismatch",
-     "The receiver's line runs at another speed than the one it was set to: a client that listens at that one "
-     "hears garble. `port0.out` of a recording has the bytes as they were sent.",
-     "A receiver that restarted unnoticed speaks at its default speed while its client does not.",
-     {whole_number_parameter("baud", 9600, 300, 4e6, "at which the receiver's line runs, bit/s")},
-     make_speed_mismatch},
+    FaultKind{"speed_mismatch",
+              "The receiver's line runs at another speed than the one it was set to: a client that listens at that one "
+              "hears garble. `port0.out` of a recording has the bytes as they were sent.",
+              "A receiver that restarted unnoticed speaks at its default speed while its client does not.",
+              {whole_number_parameter("baud", 9600, 300, 4e6, "at which the receiver's line runs, bit/s")},
+              make_speed_mismatch}
+        .that_needs(wired_uart1),
     {"one_direction_dead",
      "One end hears nothing of the other, which still hears it.",
      "A bad crimp, a pin never wired or a level shifter of the wrong voltage cuts one lead.",
-     {word_parameter("direction", "to_client", std::span(wire_directions).first(2), "which bytes do not arrive")},
+     {word_parameter("direction", "to_client", std::span(wire_directions).first(2), "which bytes do not arrive")
+          .judged_by(why_unread)},
      make_dead},
 }));
 

@@ -115,7 +115,8 @@ inline bool knows_the_sky(const FaultMoment& moment, const Arrivals& arrivals) {
 /// Seconds from the beginning of a fault until the receiver's own detector says that it is deceived.
 inline constexpr ParameterSpec detected_after_parameter =
     number_parameter("detected_after_s", no_standard, 0, 1e6,
-                     "s from the start until the receiver's own detector indicates spoofing; not given: never");
+                     "s from the start until the receiver's own detector indicates spoofing; not given: never")
+        .that_needs(spoofing_report);
 /// The edit that makes the detector say so; none when the parameter was not given.
 Edit<Epoch> detected_after(const Parameters& parameters);
 

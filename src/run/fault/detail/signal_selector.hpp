@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,12 +27,20 @@ struct SignalSelector {
     [[nodiscard]] bool by_signal() const { return !signals.empty(); }
 };
 
+// What a receiver does not track as the run starts; each as IdleValue. Of sensor models it tracks what there is.
+std::string why_untracked_system(const UsedReceiver& receiver, std::string_view name);
+std::string why_untracked_satellite(const UsedReceiver& receiver, std::string_view name);
+std::string why_untracked_signal(const UsedReceiver& receiver, std::string_view name);
+
 inline constexpr ParameterSpec constellations_parameter =
-    words_parameter("constellations", constellation_names, "systems that are hit; none given: all");
+    words_parameter("constellations", constellation_names, "systems that are hit; none given: all")
+        .judged_by(why_untracked_system);
 inline constexpr ParameterSpec satellites_parameter =
-    texts_parameter("satellites", "satellites that are hit, as G07; none given: all");
+    texts_parameter("satellites", "satellites that are hit, as G07; none given: all")
+        .judged_by(why_untracked_satellite);
 inline constexpr ParameterSpec signals_parameter =
-    words_parameter("signals", signal_names, "carriers that are hit; none given: all of a satellite");
+    words_parameter("signals", signal_names, "carriers that are hit; none given: all of a satellite")
+        .judged_by(why_untracked_signal);
 /// Satellites, and the sector and band of the sky.
 inline constexpr ParameterList satellite_selector{
     constellations_parameter,
@@ -61,7 +70,8 @@ Result<Fault> fault_of_selected(const Parameters& parameters, EditOne edit) {
 
 /// Satellites by name, and the number that is taken when none is named.
 inline constexpr ParameterList chosen_satellites{
-    texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start"),
+    texts_parameter("satellites", "satellites that are hit, as G07; none given: the highest ones at the start")
+        .judged_by(why_untracked_satellite),
     whole_number_parameter("satellite_count", no_standard, 1, 200, "how many of the highest ones; 1 when not given")};
 
 /// Satellites that are named, or else the highest ones when the fault begins: a scenario need not know which are up.
