@@ -1,5 +1,6 @@
 #include "run/emulator/assembly.hpp"
 
+#include "detail/idle_entries.hpp"
 #include "detail/modern_assembly.hpp"
 #include "detail/receiver_assembly.hpp"
 #include "detail/recorded_files.hpp"
@@ -9,6 +10,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 
 #include "base/core/bytes.hpp"
 #include "base/core/files.hpp"
@@ -166,6 +169,28 @@ SparedFiles spared_files_of(const SharedParts& shared) {
     return spared;
 }
 
+UsedReceiver used_receiver(const PlannedStation& plan, const Scenario& scenario) {
+    const firmware::Receiver& receiver = plan.parts.receiver;
+    std::vector<firmware::PortId> wired;
+    for (const WireRequest& wire : plan.wires)
+        wired.push_back(wire.port);
+    return {receiver.board(), receiver.settings(), std::move(wired), !scenario.model.sensor_model};
+}
+
+// What the scenario asks of its boards in vain. Fails with `input` for faults of a judged run: a line each.
+Result<void> judge_boards(const SharedParts& shared, const std::vector<PlannedStation>& plans, Assembly& assembly) {
+    std::vector<UsedReceiver> receivers;
+    for (const PlannedStation& plan : plans)
+        receivers.push_back(used_receiver(plan, shared.scenario));
+    const PlannedRun run{shared.scenario, *shared.navigation, receivers, shared.mode};
+    IdleEntries entries = idle_entries(run);
+    for (std::vector<std::string>& found :
+         std::array{idle_key_warnings(run), std::move(entries.warnings), idle_expectation_warnings(run)})
+        std::move(found.begin(), found.end(), std::back_inserter(assembly.warnings));
+    if (entries.refused.empty()) return {};
+    return fail(ErrorCode::input, fmt::format("{}", fmt::join(entries.refused, "\n")));
+}
+
 // All receivers, with their wires and recordings.
 Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& assembly) {
     std::vector<PlannedStation> plans;
@@ -179,6 +204,7 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
             assembly.warnings.push_back(std::move(*warning));
         plans.push_back(std::move(*plan));
     }
+    if (const auto judged = judge_boards(shared, plans, assembly); !judged) return fail(judged.error());
     std::vector<WireEnd> ends = ends_of(plans, shared.scenario);
     const SparedFiles spared_files = spared_files_of(shared);
     if (const auto spared = spare_inputs_and_recording(ends, spared_files, shared.mode.record); !spared)
@@ -202,9 +228,6 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
     std::vector<Station> stations;
     for (PlannedStation& plan : plans)
         stations.emplace_back(std::move(plan.parts));
-    for (std::string& warning :
-         idle_fault_warnings(shared.scenario, *shared.navigation, stations, shared.mode.virtual_time))
-        assembly.warnings.push_back(std::move(warning));
     return stations;
 }
 

@@ -31,34 +31,43 @@ Result<firmware::BoardProfile> board_of(const ReceiverEntry& entry, const DataFo
     return board;
 }
 
+// What a sentence about a key begins with: its place in the scenario's file; nothing where none has it.
+std::string place_of(std::string_view key, const ToldPlaces& places) {
+    const auto place = places.find(key);
+    return place == places.end() ? std::string() : place->second;
+}
+
 void warn_of_untracked(const Scenario& scenario, const firmware::BoardProfile& board, const ReceiverSettings& settings,
                        std::vector<std::string>& warnings) {
     if (scenario.model.sensor_model) return;
     for (const Constellation c : scenario.sky.constellations)
         if (!settings.tracks(c, first_signal(c)))
-            warnings.push_back(
-                fmt::format("{} does not track {}, which sky.constellations names; receiver.constellations tells it to",
-                            board.name, constellation_name(c)));
+            warnings.push_back(fmt::format(
+                "{}{} does not track {}, which sky.constellations names; receiver.constellations tells it to",
+                place_of("sky.constellations", scenario.told_at), board.name, constellation_name(c)));
 }
 
-void warn_of_rate(double asked, const firmware::Receiver& receiver, std::vector<std::string>& warnings) {
+void warn_of_rate(const ReceiverEntry& entry, const firmware::Receiver& receiver, std::vector<std::string>& warnings) {
     const firmware::BoardProfile& board = receiver.board();
+    const double asked = *entry.rate_hz;
+    const std::string place = place_of("rate_hz", entry.told_at);
     if (asked > board.max_rate_hz)
-        warnings.push_back(
-            fmt::format("{:g} Hz is more than {} can do; it runs at {:g} Hz", asked, board.name, board.max_rate_hz));
+        warnings.push_back(fmt::format("{}{:g} Hz is more than {} can do; it runs at {:g} Hz", place, asked, board.name,
+                                       board.max_rate_hz));
     const double actual = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
     if (asked < 0.99 * actual)
-        warnings.push_back(fmt::format("{:g} Hz is less than a receiver can do; it runs at {:.4g} Hz", asked, actual));
+        warnings.push_back(
+            fmt::format("{}{:g} Hz is less than a receiver can do; it runs at {:.4g} Hz", place, asked, actual));
 }
 
 void warn_of_missing_usb(const std::vector<WireRequest>& wires, const firmware::BoardProfile& board,
-                         std::vector<std::string>& warnings) {
+                         const ReceiverEntry& entry, std::vector<std::string>& warnings) {
     for (const WireRequest& wire : wires) {
         if (!wire.uri.starts_with("usbip:") || (wire.port == firmware::PortId::usb && board.usb)) continue;
-        warnings.push_back(
-            fmt::format("{}: {}; it shows {} behind a generic serial adapter, {}", wire.uri,
-                        board.usb ? "this is not the board's USB port" : board.name + " has no USB of its own",
-                        firmware::port_names[static_cast<std::size_t>(wire.port)], to_string(UsbFace{}.ids)));
+        warnings.push_back(fmt::format(
+            "{}{}: {}; it shows {} behind a generic serial adapter, {}", place_of("port", entry.told_at), wire.uri,
+            board.usb ? "this is not the board's USB port" : board.name + " has no USB of its own",
+            firmware::port_names[static_cast<std::size_t>(wire.port)], to_string(UsbFace{}.ids)));
     }
 }
 
@@ -108,8 +117,7 @@ Result<std::vector<HeardBytes>> repeated_input(const std::filesystem::path& fold
 
 // What a key of the scenario's file is refused for, with its place there.
 Error at_key(std::string_view key, Error error, const ReceiverEntry& entry) {
-    if (const auto place = entry.told_at.find(key); place != entry.told_at.end())
-        error.message = place->second + error.message;
+    error.message = place_of(key, entry.told_at) + error.message;
     return error;
 }
 
@@ -140,10 +148,10 @@ Result<void> check_power(const SharedParts& shared, std::size_t index, std::vect
                                                       same ? "" : fmt::format(", '{}'", receivers[i].power))});
     }
     if (shared.mode.virtual_time)
-        warnings.push_back(
-            fmt::format("power {}: skyloop run switches it, at the clock's pace; in virtual time nothing "
-                        "does",
-                        power));
+        warnings.push_back(fmt::format(
+            "{}{}: skyloop run switches it, at the clock's pace; in virtual time nothing does",
+            receivers[index].told_at.contains("power") ? place_of("power", receivers[index].told_at) : "power ",
+            power));
     return {};
 }
 
@@ -235,11 +243,11 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     auto& [board, wires, state] = *named;
     const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, board, index),
                                             receiver_seed(scenario.run.seed, index), entry.power_up};
-    warn_of_missing_usb(wires, board, warnings);
+    warn_of_missing_usb(wires, board, entry, warnings);
     warn_of_untracked(scenario, board, options.settings, warnings);
     if (const auto checked = check_options(board, options, entry); !checked) return fail(checked.error());
     firmware::Receiver receiver(std::move(board), options);
-    if (entry.rate_hz) warn_of_rate(*entry.rate_hz, receiver, warnings);
+    if (entry.rate_hz) warn_of_rate(entry, receiver, warnings);
     if (const auto configured = receiver.configure(entry.config); !configured)
         return fail(at_key("config", configured.error(), entry));
     if (state && !state->text().empty())
@@ -278,7 +286,7 @@ Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index
     std::vector<std::string> own;
     auto station = planned(shared, index, own);
     for (const std::string& warning : own)
-        warnings.push_back(of_receiver({ErrorCode::usage, warning}, shared.scenario, index).message);
+        warnings.push_back(of_named_receiver({ErrorCode::usage, warning}, shared.scenario, index).message);
     if (!station) return fail(of_named_receiver(station.error(), shared.scenario, index));
     return station;
 }

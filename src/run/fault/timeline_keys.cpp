@@ -55,8 +55,11 @@ constexpr ParameterSpec keys_of_faults[] = {
     number_parameter("for_s", no_standard, 0, longest_s, "how long it lasts; else to the end"),
     numbers_parameter("for_between_s", 2, 0, longest_s, "it lasts a random time within these, by the seed"),
     number_parameter("ramp_in_s", 0, 0, longest_s, "it grows to its strength within this"),
-    number_parameter("ramp_out_s", 0, 0, longest_s, "it fades within this after its end")};
-constexpr std::size_t count_of_faults_alone = 4;
+    number_parameter("ramp_out_s", 0, 0, longest_s, "it fades within this after its end"),
+    flag_parameter(
+        "allow_idle", false,
+        "a run with expectations goes on though nothing can come of it, with a warning; else it is refused")};
+constexpr std::size_t count_of_faults_alone = 5;
 
 template <class Quantity>
 std::optional<Quantity> quantity(const Parameters& keys, std::string_view name) {

@@ -97,6 +97,7 @@ void read_expectations(TableReader& top, Scenario& scenario) {
     const std::vector<std::string> receivers = receiver_names(scenario);
     top.tables("expect", "what the run is judged by (docs/failsafe.md)", [&](TableReader& table) {
         Expectation& expectation = scenario.expectations.emplace_back();
+        expectation.told_at = table.told_at();
         read_expectation(table, expectation);
         check_names(table, expectation, entries, receivers);
     });

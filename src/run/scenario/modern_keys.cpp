@@ -118,6 +118,8 @@ void read_corrections(TableReader& table, ModernSettings& settings) {
     table.boolean("ionosphere_free", settings.navigation.corrections.ionosphere_free,
                   "combines both signals of a satellite where two are tracked, and solves with these satellites alone "
                   "where they suffice");
+    if (!table.recording() && table.has("ionosphere_free"))
+        settings.ionosphere_free_told_at = table.told_at("ionosphere_free");
 }
 
 void read_solution(TableReader& table, ModernSettings& settings) {

@@ -41,7 +41,8 @@ struct ModernSettings {
     std::optional<Seconds> ephemeris_collection;  ///< nothing: what the search leaves of the board's warm start
     std::filesystem::path ionosphere_maps;        ///< IONEX file; empty: none
     std::vector<std::filesystem::path> tables{};  ///< files of antennas and satellites that `propagation` was read from
-    std::vector<std::string> idle_keys;  ///< what a reader should be told of keys that were given and cannot act
+    std::vector<std::string> idle_keys;     ///< what a reader should be told of keys that were given and cannot act
+    std::string ionosphere_free_told_at{};  ///< "FILE:LINE:COLUMN: KEY: "; empty: the key is not there
 
     /// The numbers of a preset in surroundings.
     static ModernSettings of(ModernPreset preset, Surroundings surroundings = Surroundings::open_sky);

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "detail/scenario_keys.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "run/scenario/board_files.hpp"
 
 namespace skyloop::inline run {
@@ -13,6 +16,75 @@ namespace {
 
 void add_once(std::vector<firmware::NmeaSentence>& sentences, firmware::NmeaSentence sentence) {
     if (std::find(sentences.begin(), sentences.end(), sentence) == sentences.end()) sentences.push_back(sentence);
+}
+
+using Phrases = std::vector<std::string>;
+
+// Beside a key, once it has been read: what of it comes to nothing at a board.
+void judge(TableReader& receiver, std::string_view key, ReceiverEntry& entry, decltype(KeyJudge::idle) idle) {
+    if (!receiver.recording() && receiver.has(key)) entry.judges.push_back({receiver.told_at(key), idle});
+}
+
+// Of a key of which all or nothing comes.
+template <const ReceiverNeed& need>
+Phrases without(const UsedReceiver& receiver, const ReceiverEntry&, const Scenario&) {
+    return need.met(receiver) ? Phrases() : Phrases{std::string(need.lack)};
+}
+
+Phrases unsent_sentences(const UsedReceiver& receiver, const ReceiverEntry& entry, const Scenario&) {
+    Phrases idle;
+    for (const firmware::NmeaSentence sentence : entry.sentences) {
+        const std::string_view name = firmware::nmea_sentence_names[static_cast<std::size_t>(sentence)];
+        if (!sends_periodically(receiver, firmware::find_output_message(name)->id))
+            idle.push_back(fmt::format("never sends {}", name));
+    }
+    return idle;
+}
+
+Phrases unsent_rates(const UsedReceiver& receiver, const ReceiverEntry& entry, const Scenario&) {
+    Phrases idle;
+    for (const auto& [item, value] : entry.config)
+        for (const firmware::OutputMessage& message : firmware::output_messages()) {
+            const bool is_rate = item >= message.i2c_key && item < message.i2c_key + firmware::port_count;
+            if (is_rate && value > 0 && !sends_periodically(receiver, message.id))
+                idle.push_back(
+                    fmt::format("has {} and never sends {}", firmware::find_config_key(item)->name, message.name));
+        }
+    return idle;
+}
+
+Phrases unreceived_systems(const UsedReceiver& receiver, const ReceiverEntry& entry, const Scenario&) {
+    Phrases idle;
+    for (const Constellation constellation : entry.constellations)
+        if (!can_track(receiver.board, constellation))
+            idle.push_back(fmt::format("does not receive {}", constellation_name(constellation)));
+    return idle;
+}
+
+Phrases unreceived_band(const UsedReceiver& receiver, const ReceiverEntry& entry, const Scenario&) {
+    if (!entry.dual_frequency || has_second_band(receiver.board)) return {};
+    return {
+        "receives one band: the second signals are measured and recorded all the same, and no message of it "
+        "reports them"};
+}
+
+// Without limits of its own nothing but the filter of a measured solution goes by the model.
+Phrases unheeded_model(const UsedReceiver& receiver, const ReceiverEntry&, const Scenario& scenario) {
+    if (receiver.board.dynamic_limits || receiver.measures) return {};
+    return {fmt::format("has no limits by dynamic_model, and model.name = \"{}\" has no filter",
+                        model_name(scenario.model))};
+}
+
+Phrases shortened_hold(const UsedReceiver&, const ReceiverEntry& entry, const Scenario&) {
+    constexpr double most_mps = 2.55;  // CFG-MOT-GNSSSPEED_THRS, U1, cm/s
+    if (entry.static_hold_below.value() <= most_mps) return {};
+    return {fmt::format("holds a position below {:g} m/s at most", most_mps)};
+}
+
+// The vector of a pair is reported, or goes to another program.
+Phrases unreported_pair(const UsedReceiver& receiver, const ReceiverEntry& entry, const Scenario& scenario) {
+    if (!entry.base || !scenario.outputs.empty()) return {};
+    return without<heading_report>(receiver, entry, scenario);
 }
 
 void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::filesystem::path& folder) {
@@ -32,20 +104,25 @@ void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::fi
         entry.told_at[key] = receiver.told_at(key);
     receiver.number("rate_hz", entry.rate_hz, {0.01, 100}, {"navigation rate at the factory", "the board's"});
     receiver.integer("baud", entry.baud, {300, 4e6}, {"bit/s of UART1 at the factory", "the board's"});
+    judge(receiver, "baud", entry, without<wired_uart1>);
     if (const auto sentences = receiver.choices("sentences", firmware::nmea_sentence_names,
                                                 {"NMEA sentences at the factory, each every epoch", "the board's"}))
         for (const std::size_t index : *sentences)
             add_once(entry.sentences, static_cast<firmware::NmeaSentence>(index));
+    judge(receiver, "sentences", entry, unsent_sentences);
 }
 
 void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
     receiver.named_values(
         "config", "configuration items that its user has saved in it, by their names, such as `CFG-RATE-MEAS = 100`",
         [&](TableReader& config) { entry.config = read_config_items(config); });
+    judge(receiver, "config", entry, unsent_rates);
     read_constellation_list(receiver, "constellations", entry.constellations,
                             {"systems that it tracks from the factory on", "the board's"});
+    judge(receiver, "constellations", entry, unreceived_systems);
     receiver.boolean("dual_frequency", entry.dual_frequency,
                      "it tracks the second signal of each system too; false leaves it to the board");
+    judge(receiver, "dual_frequency", entry, unreceived_band);
     receiver.word("start", {{"hot", StartKind::hot}, {"warm", StartKind::warm}, {"cold", StartKind::cold}}, entry.start,
                   "what it knows at the start: everything; time, place and almanac; nothing");
     receiver.word("dynamic_model",
@@ -59,6 +136,7 @@ void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
                    {"airborne-4g", DynamicModel::airborne_4g}},
                   entry.dynamic_model,
                   "how it expects to move; a u-blox board withholds a fix beyond its limits of height and speed");
+    judge(receiver, "dynamic_model", entry, unheeded_model);
     read_export_limits(
         receiver, entry.export_limits,
         {"a fix above 18 288 m and above 515 m/s is withheld: never, beyond both, beyond one of them", "the board's"});
@@ -66,6 +144,7 @@ void read_navigation_keys(TableReader& receiver, ReceiverEntry& entry) {
                       {"from the epoch to the first byte of its messages", "the board's"});
     receiver.quantity("static_hold_mps", entry.static_hold_below, {0, 100},
                       "slower than this, the position is held; 0: never");
+    judge(receiver, "static_hold_mps", entry, shortened_hold);
 }
 
 void read_place_and_power_keys(TableReader& receiver, ReceiverEntry& entry, const std::filesystem::path& folder) {
@@ -73,6 +152,7 @@ void read_place_and_power_keys(TableReader& receiver, ReceiverEntry& entry, cons
                      "it is switched on at the start of the run; false: it has been on for long");
     receiver.file_path("state_file", folder, entry.state_file,
                        {"keeps what the receiver saves for the next run", "none"});
+    judge(receiver, "state_file", entry, without<command_input>);
     constexpr double longest_arm_m = 1000;
     if (const auto offset = receiver.numbers(
             "antenna_offset_m", 3, "from the point that follows the trajectory to the antenna: forward, right, down",
@@ -107,6 +187,7 @@ void read_base(TableReader& receiver, std::span<const std::string> names, Scenar
         receiver.mistake("base", fmt::format("'{}' is this receiver itself; expected another one", base));
     else
         scenario.receivers.back().base = index;
+    judge(receiver, "base", scenario.receivers.back(), unreported_pair);
 }
 
 // @return where the output goes; an unchanged one, and a mistake, for a text that is no output

@@ -180,6 +180,16 @@ std::string_view model_name(const ModelSettings& settings);
 /// Makes it the model of that name. False for an unknown name, which changes nothing.
 bool choose_model(ModelSettings& settings, std::string_view name);
 
+struct ReceiverEntry;
+struct Scenario;
+
+/// A key of a receiver that is there, and of what of it nothing comes at a board.
+struct KeyJudge {
+    std::string told_at{};  ///< "FILE:LINE:COLUMN: KEY: "
+    /// Phrases behind the board's name, a value each: "never sends THS".
+    std::vector<std::string> (*idle)(const UsedReceiver&, const ReceiverEntry&, const Scenario&) = nullptr;
+};
+
 /// One emulated receiver and its wires.
 struct ReceiverEntry {
     std::string name;                               ///< empty: receiver0, receiver1, …
@@ -203,6 +213,7 @@ struct ReceiverEntry {
     std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
     std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna
     ToldPlaces told_at{};             ///< of the keys that a board or a machine may refuse
+    std::vector<KeyJudge> judges{};   ///< of the keys of which at some boards nothing comes
 };
 
 /// A fault and when it works.
@@ -211,6 +222,7 @@ struct FaultEntry {
     std::string kind;  ///< of fault_kinds()
     Parameters parameters;
     std::vector<std::size_t> receivers;  ///< by their places in the list, ascending; all of them unless told otherwise
+    bool allow_idle = false;             ///< a judged run goes on where nothing can come of it
     std::string told_at{};               ///< "FILE:LINE:COLUMN: ", for messages; empty: in no file
 };
 

@@ -132,6 +132,8 @@ void read_fault(TableReader& table, Scenario& scenario) {
     entry.receivers = read_receiver_choice(table, scenario, "names of the receivers that it is for");
     GivenKeys given = given_keys(table, timeline_keys());
     entry.when = read_times(table, timeline_keys(), given.timeline);
+    const auto allowed = given.timeline.find("allow_idle");
+    entry.allow_idle = allowed != given.timeline.end() && allowed->second == ParameterValue(true);
     if (kind != nullptr) {
         entry.kind = kind->name;
         const CheckedParameters own = own_parameters(table, kind->parameters, timeline_keys(), given.own);

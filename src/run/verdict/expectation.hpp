@@ -116,6 +116,7 @@ struct Expectation {
     std::string receiver;  ///< whom it is about; empty: each
     std::optional<ExpectedSentence> sentence{};
     std::optional<Probe> probe{};
+    std::string told_at{};  ///< "FILE:LINE:COLUMN: ", for messages; empty: in no file
 
     /// What verdicts call it.
     [[nodiscard]] std::string title() const;
