@@ -38,7 +38,7 @@ constexpr Nanoseconds ephemeris_life = 4h;
 Receiver::Core::Core(BoardProfile board, const ReceiverOptions& options, const MakerRow& row)
     : parts_(std::move(board), options, row),
       options_(options),
-      tracker_(parts_.board),
+      tracker_(parts_.board, options.seed),
       power_(parts_.board.power),
       corrections_(parts_.board.corrections),
       input_(

@@ -68,6 +68,8 @@ struct MonitorStatus {
     AntennaStatus antenna = AntennaStatus::unknown;
     int antenna_power = 2;  ///< 0 off, 1 on, 2 unknown
     SpoofingIndication spoofing = SpoofingIndication::unknown;
+    int temperature = 28;    ///< of the chip, °C
+    std::uint64_t dice = 0;  ///< of what is noise within a message, other for each epoch
     /// MON-HW and MON-RF say "unknown" whatever `jamming_state` is, and SEC-SIG alone tells it (F9 HPG 1.50 and later).
     bool jamming_hidden = false;
     bool told_elsewhere = false;  ///< the board has SEC-SIG or Septentrio's RFStatus, which nothing hides

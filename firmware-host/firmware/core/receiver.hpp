@@ -31,7 +31,7 @@ struct ReceiverCounters {
 struct ReceiverOptions {
     double rate_hz = 0;           ///< navigation rate from the factory on; 0: the board's own
     ReceiverSettings settings{};  ///< what else its user has set from the factory on
-    std::uint64_t seed = 1;       ///< of the jitter of its latency
+    std::uint64_t seed = 1;       ///< of the jitter of its latency, and of its monitors
     bool power_up = false;        ///< it is switched on at the start; otherwise it has been on for long
 };
 

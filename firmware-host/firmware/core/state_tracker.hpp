@@ -1,9 +1,11 @@
 /// How a receiver's report of itself goes on from epoch to epoch.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 
+#include "firmware/core/monitor_drift.hpp"
 #include "firmware/core/navigation_state.hpp"
 #include "world/flow/receiver_settings.hpp"
 
@@ -27,7 +29,8 @@ struct Forgotten {
 class StateTracker {
 public:
     /// What it knew before its first start is not simulated: the time, and all of it.
-    explicit StateTracker(const BoardProfile& board) : board_(board) {
+    /// @param seed of what wanders by itself
+    explicit StateTracker(const BoardProfile& board, std::uint64_t seed = 1) : board_(board), drift_(board, seed) {
         state_.time.time = state_.time.date = state_.time.leap_seconds = true;
     }
 
@@ -71,9 +74,10 @@ private:
     void freeze_course();
     void count_distance(const Fix& before);
     void monitor(const ReceiverConfig& config);
-    [[nodiscard]] BandMonitor monitor_band(Decibels interference, bool watched) const;
+    [[nodiscard]] BandMonitor monitor_band(const QuietBand& quiet, Decibels interference, bool watched) const;
 
     const BoardProfile& board_;
+    MonitorDrift drift_;
     NavigationState state_;
     std::optional<GpsTime> started_;  ///< nothing: long ago
     std::optional<GpsTime> booted_;   ///< nothing: long ago, and there was no epoch yet

@@ -59,8 +59,7 @@ std::size_t systems_used(const Fix& fix) {
 
 // u-blox's thresholds are not published: a rise of the noise by 3 dB is seen, by 10 dB is a warning.
 constexpr double interference_ok_db = 3, interference_warning_db = 10;
-// In captures of undisturbed receivers the indicator is 13 to 27, the gain counter 2457 to 4914, the noise 65 to 99.
-constexpr double quiet_indicator = 14, indicator_per_db = 9, quiet_gain = 4200, gain_per_db = 140, quiet_noise = 69;
+constexpr double indicator_per_db = 9, gain_per_db = 140;
 
 }  // namespace
 
@@ -124,12 +123,12 @@ std::optional<GpsTime> StateTracker::first_tracking() const {
     return first;
 }
 
-BandMonitor StateTracker::monitor_band(Decibels interference, bool watched) const {
+BandMonitor StateTracker::monitor_band(const QuietBand& quiet, Decibels interference, bool watched) const {
     BandMonitor m;
     const double rise = std::max(0.0, interference.value());
-    m.jamming_indicator = static_cast<int>(std::lround(std::min(255.0, quiet_indicator + indicator_per_db * rise)));
-    m.agc = static_cast<int>(std::lround(std::clamp(quiet_gain - gain_per_db * rise, 0.0, 8191.0)));
-    m.noise_per_ms = static_cast<int>(std::lround(std::min(65535.0, quiet_noise * std::pow(10.0, rise / 20))));
+    m.jamming_indicator = static_cast<int>(std::lround(std::min(255.0, quiet.indicator + indicator_per_db * rise)));
+    m.agc = drift_.gain_count(quiet.gain - gain_per_db * rise);
+    m.noise_per_ms = static_cast<int>(std::lround(std::min(65535.0, quiet.noise * std::pow(10.0, rise / 20))));
     if (!watched) return m;
     m.jamming_state = rise < interference_ok_db ? 1 : 2;
     if (rise >= interference_warning_db && !state_.epoch.fix.has_position()) m.jamming_state = 3;
@@ -139,8 +138,12 @@ BandMonitor StateTracker::monitor_band(Decibels interference, bool watched) cons
 void StateTracker::monitor(const ReceiverConfig& config) {
     MonitorStatus& m = state_.monitors;
     const FrontEnd& front = state_.epoch.front_end;
-    m.upper = monitor_band(front.interference, config.watches_interference);
-    if (board_.dual_frequency) m.lower = monitor_band(front.lower_interference, config.watches_interference);
+    drift_.advance(state_.epoch.fix.time);
+    m.upper = monitor_band(drift_.upper(), front.interference, config.watches_interference);
+    if (board_.dual_frequency)
+        m.lower = monitor_band(drift_.lower(), front.lower_interference, config.watches_interference);
+    m.temperature = static_cast<int>(std::lround(drift_.temperature(state_.since_boot)));
+    m.dice = drift_.dice();
     m.spoofing = config.reports_spoofing ? front.spoofing : SpoofingIndication::unknown;
 
     if (!config.watches_antenna) {

@@ -255,6 +255,21 @@ SbfChannelStatus sbf_channel_status(const NavigationState& state) {
     return block;
 }
 
+namespace {
+
+// Gain and variance of the samples follow the counts of a u-blox receiver (invented): 20 to 50 dB, and 100 where the
+// automatic gain keeps up.
+SbfFrontEnd front_end_of(std::uint8_t id, const BandMonitor& band) {
+    constexpr double least_db = 20, range_db = 30, full_count = 8191, settled = 96, per_indicator = 0.3;
+    SbfFrontEnd front_end;
+    front_end.id = id;
+    front_end.gain = nearest<std::int8_t>(least_db + range_db * band.agc / full_count);
+    front_end.sample_variance = nearest<std::uint8_t>(settled + per_indicator * band.jamming_indicator);
+    return front_end;
+}
+
+}  // namespace
+
 SbfReceiverStatus sbf_receiver_status(const NavigationState& state) {
     auto block = sbf_block<SbfReceiverStatus>(state);
     block.up_time.set(std::floor(state.since_start.value()));
@@ -262,6 +277,11 @@ SbfReceiverStatus sbf_receiver_status(const NavigationState& state) {
                      (state.time.time ? tow_set : 0) | (has_solution(state) ? fine_time : 0) |
                      (state.corrections.come ? corrections_come : 0);
     block.rx_error = state.monitors.antenna == AntennaStatus::short_circuit ? antenna_error : 0;
+    // Codes of front ends: 0 of L1 and E1, 3 of L2 (mosaic-X5 reference guide, AGCState).
+    constexpr std::uint8_t of_l1 = 0, of_l2 = 3, degrees_offset = 100;
+    block.temperature = nearest<std::uint8_t>(state.monitors.temperature + degrees_offset);
+    block.front_ends.push_back(front_end_of(of_l1, state.monitors.upper));
+    if (state.monitors.lower.agc > 0) block.front_ends.push_back(front_end_of(of_l2, state.monitors.lower));
     return block;
 }
 

@@ -67,7 +67,7 @@ MonSys system_load(const ReportContext& context) {
         m.io_usage_max = std::max(m.io_usage_max.raw, nearest<std::uint8_t>(port.peak_usage_percent));
     }
     m.run_time.set(std::floor(context.state.since_boot.value()));
-    m.temp_value = 28;
+    m.temp_value = nearest<std::int8_t>(context.state.monitors.temperature);
     return m;
 }
 

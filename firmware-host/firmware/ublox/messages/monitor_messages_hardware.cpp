@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/random.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "receiver/protocol/ubx_hardware.hpp"
@@ -114,10 +115,11 @@ MonRf radio(const ReportContext& context) {
     return m;
 }
 
-// The passband of the front end, and a peak of what the jamming indicator says at the carrier.
-MonSpanItem spectrum(double centre_hz, const BandMonitor& monitor) {
+// The passband of the front end, and a peak of what the jamming indicator says at the carrier. From bin to bin it is as
+// rough as an average of some twenty spectra (invented).
+MonSpanItem spectrum(double centre_hz, const BandMonitor& monitor, RandomStream dice) {
     constexpr double step_hz = 500e3, floor_quarter_db = 27, passband_quarter_db = 80, passband_hz = 20e6,
-                     jam_quarter_db = 0.4, jam_hz = 1e6;
+                     jam_quarter_db = 0.4, jam_hz = 1e6, roughness_quarter_db = 2, most_roughness = 3;
     MonSpanItem item;
     item.span = 128'000'000;
     item.res = 500'000;
@@ -127,7 +129,8 @@ MonSpanItem spectrum(double centre_hz, const BandMonitor& monitor) {
         const double offset_hz = (static_cast<double>(i) - 127.5) * step_hz;
         const double filter = passband_quarter_db / (1 + std::pow(offset_hz / passband_hz, 4));
         const double peak = jam_quarter_db * monitor.jamming_indicator / (1 + std::pow(offset_hz / jam_hz, 2));
-        item.spectrum[i] = nearest<std::uint8_t>(floor_quarter_db + filter + peak);
+        const double rough = roughness_quarter_db * std::clamp(dice.normal(), -most_roughness, most_roughness);
+        item.spectrum[i] = nearest<std::uint8_t>(floor_quarter_db + filter + peak + rough);
     }
     return item;
 }
@@ -138,7 +141,8 @@ MonSpan spectra(const ReportContext& context) {
     MonSpan m;
     const std::vector<BandMonitor> bands = bands_of(context);
     for (std::size_t block = 0; block < bands.size(); ++block)
-        m.blocks.push_back(spectrum(centres_hz[block], bands[block]));
+        m.blocks.push_back(spectrum(centres_hz[block], bands[block],
+                                    {context.state.monitors.dice, block == 0 ? "span.upper" : "span.lower"}));
     return m;
 }
 
