@@ -221,7 +221,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     parts_.reported = state;
     ++counters_.epochs;
     if (!settings_.navigating) return;
-    const GpsTime burst = reporter_.plan(state);
+    const GpsTime burst = reporter_.plan(state, time);
     if (state->reports > 0 && !parts_.faults.mute) report_time_ = burst;
     if (off) sleep_.plan({.until = off->until, .wakes = wake_by_every_pin | wake_by_usb, .saves_power = true}, burst);
 }

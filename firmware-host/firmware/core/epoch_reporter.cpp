@@ -32,8 +32,8 @@ GpsTime EpochReporter::burst_time(GpsTime epoch) {
     return last_burst_;
 }
 
-GpsTime EpochReporter::plan(const std::shared_ptr<const NavigationState>& state) {
-    const GpsTime burst = advanced(burst_time(state->epoch.fix.time), state->report_delay);
+GpsTime EpochReporter::plan(const std::shared_ptr<const NavigationState>& state, GpsTime epoch) {
+    const GpsTime burst = advanced(burst_time(epoch), state->report_delay);
     for (int i = 0; i < state->reports; ++i)
         parts_.outbox.plan(burst, [this, state](GpsTime t) { send(*state, t); });
     return burst;

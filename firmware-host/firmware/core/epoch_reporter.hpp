@@ -16,8 +16,9 @@ public:
     EpochReporter(ReceiverParts& parts, std::uint64_t seed) : parts_(parts), latency_noise_(seed, "receiver.latency") {}
 
     /// Plans the messages of an epoch, as often as it is to be reported.
+    /// @param epoch when it was, whatever the state says that it was
     /// @return when they begin to leave
-    GpsTime plan(const std::shared_ptr<const NavigationState>& state);
+    GpsTime plan(const std::shared_ptr<const NavigationState>& state, GpsTime epoch);
     void restart(GpsTime now) { last_burst_ = now, reported_antenna_.reset(); }
     /// The texts of a start. @param woken it was off, not without power
     void send_banner(GpsTime now, bool woken);

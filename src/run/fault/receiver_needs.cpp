@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "base/core/words.hpp"
+#include "firmware/messages/make_message.hpp"
 #include "firmware/ublox/config/config_keys.hpp"
 #include "firmware/ublox/config/signal_keys.hpp"
-#include "firmware/messages/make_message.hpp"
 #include "receiver/protocol/ubx_messages.hpp"
 #include "run/fault/known_names.hpp"
 
@@ -107,8 +107,7 @@ bool may_be_own(const BoardProfile& board, std::string_view wanted) {
 
 bool takes_commands(const UsedReceiver& receiver) {
     const MakerKind kind = receiver.board.maker;
-    return kind == MakerKind::ublox || kind == MakerKind::mtk || kind == MakerKind::airoha ||
-           kind == MakerKind::sbf;
+    return kind == MakerKind::ublox || kind == MakerKind::mtk || kind == MakerKind::airoha || kind == MakerKind::sbf;
 }
 
 bool answers_version(const UsedReceiver& receiver) {
@@ -166,8 +165,7 @@ bool reports_calendar(const UsedReceiver& receiver) {
 
 bool reports_weeks(const UsedReceiver& receiver) {
     const MakerKind kind = receiver.board.maker;
-    return kind == MakerKind::ublox || kind == MakerKind::sbf || kind == MakerKind::msp ||
-           kind == MakerKind::mavlink;
+    return kind == MakerKind::ublox || kind == MakerKind::sbf || kind == MakerKind::msp || kind == MakerKind::mavlink;
 }
 
 bool takes_corrections(const UsedReceiver& receiver) {
@@ -182,8 +180,8 @@ bool solves_rtk(const UsedReceiver& receiver) { return takes_corrections(receive
 
 bool reports_dead_reckoning(const UsedReceiver& receiver) {
     const MakerKind kind = receiver.board.maker;
-    return receiver.board.timing.coasting.value() > 0 && kind != MakerKind::msp &&
-           kind != MakerKind::msp_v1 && kind != MakerKind::mavlink && kind != MakerKind::sbf;
+    return receiver.board.timing.coasting.value() > 0 && kind != MakerKind::msp && kind != MakerKind::msp_v1 &&
+           kind != MakerKind::mavlink && kind != MakerKind::sbf;
 }
 
 bool has_time_mode(const UsedReceiver& receiver) {

@@ -8,8 +8,8 @@
 #include <map>
 #include <set>
 
-#include "firmware/ublox/config/config_keys.hpp"
 #include "firmware/core/port_id.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_names.hpp"
@@ -38,10 +38,8 @@ BoardProfile eager_board(const std::string& name) {
     board.transmit_buffer_bytes = board.generated_ahead_bytes = 1 << 20;
     board.quirks.default_interference_monitor = true;
     board.timing.answer = Seconds(0.001);
-    if (board.maker == MakerKind::sbf)
-        board.sbf_blocks = {"PVTGeodetic", "AttEuler", "RFStatus", "ReceiverTime"};
-    if (board.maker != MakerKind::ublox && board.maker != MakerKind::mtk &&
-        board.maker != MakerKind::airoha)
+    if (board.maker == MakerKind::sbf) board.sbf_blocks = {"PVTGeodetic", "AttEuler", "RFStatus", "ReceiverTime"};
+    if (board.maker != MakerKind::ublox && board.maker != MakerKind::mtk && board.maker != MakerKind::airoha)
         return board;
     for (const UbxMessageId message : board.messages)
         board.config[*firmware::rate_key(message, PortId::uart1)] = 1;

@@ -79,6 +79,15 @@ TEST(FirmwareFaults, AnswersPollsFromWhatItReportsAndGoesOnWithWhatItKnows) {
     EXPECT_EQ(r.receiver.state().epoch_index, 1U);
 }
 
+// Messages leave when the epoch was, whatever time they report: those after a step back of an hour, too.
+TEST(FirmwareFaults, SendsInTimeWhateverTimeItReports) {
+    BrokenReceiver receiver;
+    receiver.set(0x20910007, 1);  // CFG-MSGOUT-UBX_NAV_PVT_UART1
+    receiver.wait(3s, [](NavigationState& state) { state.epoch.fix.time += 1h; });
+    receiver.wait(3s);
+    EXPECT_EQ(receiver.solutions().size(), 6U);
+}
+
 TEST(FirmwareFaults, EditsEachEpochOnce) {
     BrokenReceiver r;
     int calls = 0;
