@@ -65,8 +65,10 @@ TEST(Listings, HaveEveryMessage) {
         words >> protocol >> name;
         names.insert(name);
     }
-    for (const UbxMessage& message : ubx_messages())
-        if (message.list != nullptr) EXPECT_TRUE(names.contains(std::string(message.name))) << message.name;
+    for (const UbxMessage& message : ubx_messages()) {
+        const bool has_no_layout = message.list == nullptr;
+        EXPECT_TRUE(has_no_layout || names.contains(std::string(message.name))) << message.name;
+    }
     const auto is_there = [&]<class Message>() {
         EXPECT_TRUE(names.contains(std::string(Message::message_name))) << Message::message_name;
         return false;
