@@ -143,6 +143,17 @@ struct RawNumber {
     Raw raw{};
 };
 
+/// What a number means by a declaration: a value, or of what can be absent perhaps none.
+template <class Declaration>
+constexpr auto declared_value(double number) {
+    constexpr FieldFormat format = Declaration::format;
+    const double value = number * format.factor / format.divisor;
+    if constexpr (format.can_be_absent)
+        return number == format.absent ? std::nullopt : std::optional(value);
+    else
+        return value;
+}
+
 /// One number, or an array of them.
 template <FieldText Declared, class Raw, std::size_t Count = 1>
 struct Field : std::array<Raw, Count> {
@@ -153,9 +164,9 @@ struct Field : std::array<Raw, Count> {
     template <std::convertible_to<Raw>... Number>
     requires(sizeof...(Number) > 1 && sizeof...(Number) <= Count) constexpr Field(Number... number)  // NOLINT
         : std::array<Raw, Count>{static_cast<Raw>(number)...} {}
-    /// In the declared unit.
-    [[nodiscard]] double value(std::size_t i) const {
-        return static_cast<double>((*this)[i]) * format.factor / format.divisor;
+    /// In the declared unit; of numbers that can be absent nothing, if this one is.
+    [[nodiscard]] constexpr auto value(std::size_t i) const {
+        return declared_value<Field>(static_cast<double>((*this)[i]));
     }
     /// The nearest number to a value in the declared unit.
     void set(std::size_t i, double value) { (*this)[i] = nearest<Raw>(value * format.divisor / format.factor); }
@@ -171,14 +182,7 @@ struct Field<Declared, Raw, 1> : RawNumber<Raw> {
         return *this;
     }
     /// In the declared unit; of a field that can be absent nothing, if it is.
-    [[nodiscard]] constexpr auto value() const {
-        const auto number = static_cast<double>(this->raw);
-        const double value = number * format.factor / format.divisor;
-        if constexpr (format.can_be_absent)
-            return number == format.absent ? std::nullopt : std::optional(value);
-        else
-            return value;
-    }
+    [[nodiscard]] constexpr auto value() const { return declared_value<Field>(static_cast<double>(this->raw)); }
     /// The nearest number to a value in the declared unit. Where the largest or the least number stands for nothing, a
     /// value beyond the range is the one beside it.
     void set(double value) {

@@ -46,6 +46,9 @@ TEST(Field, WhatIsAbsentHasNoValue) {
     EXPECT_EQ(accuracy.value(), std::nullopt);
     accuracy = 150;
     EXPECT_EQ(accuracy.value(), 1.5);
+    R4<"covariance_m2!-2e10", 2> covariance = {-2e10F, 4};
+    EXPECT_EQ(covariance.value(0), std::nullopt);
+    EXPECT_EQ(covariance.value(1), 4);
 }
 
 TEST(Field, SettingRoundsToTheNearestAndStaysInRange) {
