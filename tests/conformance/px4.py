@@ -179,37 +179,66 @@ class Px4At9600(Px4):
 
 
 class Px4Systems(Px4):
-    """With GPS_1_GNSS: one CFG-VALSET for all systems, with QZSS L1S wherever GPS is on (GPSDriverUBX::configureDevice)."""
+    """With GPS_1_GNSS: all systems in one message, with QZSS L1S wherever GPS is on, SBAS in another one
+    (GPSDriverUBX::configureDevice); CFG-GNSS of seven blocks for receivers without keys (configureDevicePreV27)."""
 
     name = "PX4 with GPS_1_GNSS"
-    gps, sbas, galileo, beidou, glonass = 1, 2, 4, 8, 16
+    gps, sbas, galileo, beidou, glonass, navic = 1, 2, 4, 8, 16, 32
     l1s = 0x10310014  # CFG-SIGNAL-QZSS_L1S_ENA
     masks = (gps, gps | galileo, gps | sbas | galileo, 31, galileo | beidou)
+    # CFG-SIGNAL of the second band: GPS with the override of its health, QZSS, Galileo, BeiDou, GLONASS, NavIC.
+    l1_l2 = {gps: (0x10310003,), galileo: (0x1031000A,), beidou: (0x1031000E,), glonass: (0x1031001A,)}
+    l1_l5 = {gps: (0x10310004, 0x10320001), galileo: (0x10310009,), beidou: (0x10310028,), navic: (0x10310026, 0x1031001D)}
+    # gnssId, channels and signal of CFG-GNSS; QZSS goes with GPS, IMES is always off.
+    blocks = ((0, gps, 8, 16), (5, gps, 0, 3), (1, sbas, 1, 3), (2, galileo, 4, 8), (3, beidou, 8, 16), (6, glonass, 8, 14),
+              (4, 0, 0, 0))
 
     def configure_by_keys(self):
         super().configure_by_keys()
         for mask in self.masks:
             self.step(f"CFG-VALSET of the systems, mask {mask}")
             self.send(ubx.valset(self.systems(mask)))
-            # A NEO-M9N has no L1S: it refuses the whole message, and PX4 gives up (PX4-GPSDrivers, pull request 225).
-            wanted = self.board.is_f9p or not mask & self.gps
+            wanted = self.is_possible(mask)
             self.check(self.wait_ack("CFG-VALSET", ACK) is wanted, "ACK-ACK" if wanted else "ACK-NAK", "the other one")
             self.pump(0.6)
-        without_l1s = [(key, value) for key, value in self.systems(31) if key != self.l1s]
+            on = int(bool(mask & self.sbas))
+            self.keys("SBAS", [(0x10310020, on)] + ([(0x10310005, 1)] if on else []))
+            self.pump(0.6)
+        without_l1s = [(key, value) for key, value in self.systems(self.gps | self.galileo) if key != self.l1s]
         self.set(ubx.valset(without_l1s), "CFG-VALSET", ACK)
         self.pump(3)
 
+    def configure_by_messages(self):
+        super().configure_by_messages()
+        for mask in (self.gps, self.gps | self.sbas | self.galileo, 31):
+            self.step(f"CFG-GNSS, mask {mask}")
+            payload = bytes((0, 0, 0xFF, len(self.blocks)))
+            for number, system, least, most in self.blocks:
+                on = bool(mask & system)
+                payload += bytes((number, least, most, 0, 1, 0, 1, 0) if on else (number, 0, 0, 0, 0, 0, 0, 0))
+            self.send(ubx.frame("CFG-GNSS", payload))
+            wanted = mask != 31  # GLONASS and BeiDou are one front end of the M8 (data sheet, concurrent GNSS)
+            self.check(self.wait_ack("CFG-GNSS", ACK) is wanted, "ACK-ACK" if wanted else "ACK-NAK", "the other one")
+            self.pump(0.6)
+        self.pump(3)
+
+    def is_possible(self, mask):
+        """A NEO-M9N has no L1S: it refuses the whole message, and PX4 gives up (PX4-GPSDrivers, pull request 225). An M10
+        has BeiDou's B1I on, which excludes GLONASS (MAX-M10S integration manual UBX-20053088, 2.1.1.3)."""
+        if self.board.generation == 10:
+            return not (mask & self.beidou and mask & self.glonass)
+        return not (self.board.name.startswith("ublox-m9") and mask & self.gps)
+
     def systems(self, mask):
-        bands = self.board.is_f9p
-        gps, galileo, beidou, glonass = (int(bool(mask & bit)) for bit in (self.gps, self.galileo, self.beidou, self.glonass))
-        pairs = [(0x1031001F, gps), (0x10310024, gps)]
-        pairs += [(0x10310012, 1), (self.l1s, 1)] if gps else []
-        if bands:
-            pairs += [(0x10310003, gps)] + ([(0x10310015, 1)] if gps else [])
-        for enable, second, on in ((0x10310021, 0x1031000A, galileo), (0x10310022, 0x1031000E, beidou)):
-            pairs += [(enable, on)] + ([(second, on)] if bands else [])
-        pairs += [(0x10310025, glonass)] + ([(0x10310018, 1)] if glonass else [])
-        return pairs + ([(0x1031001A, glonass)] if bands else [])
+        bands = {"ublox-f9p-15b": self.l1_l5}.get(self.board.name, self.l1_l2 if self.board.is_f9p else {})
+        gps = int(bool(mask & self.gps))
+        pairs = [(0x1031001F, gps), (0x10310024, gps)] + ([(0x10310012, 1), (self.l1s, 1)] if gps else [])
+        if gps and bands:
+            pairs.append((0x10310015 if bands is self.l1_l2 else 0x10310017, 1))
+        for system, enable in ((self.galileo, 0x10310021), (self.beidou, 0x10310022), (self.glonass, 0x10310025)):
+            pairs.append((enable, int(bool(mask & system))))
+        pairs += [(0x10310018, 1)] if mask & self.glonass else []
+        return pairs + [(item, int(bool(mask & system))) for system, items in bands.items() for item in items]
 
 
 class Px4Ublox6(Px4):
