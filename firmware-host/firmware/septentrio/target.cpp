@@ -63,12 +63,12 @@ void SeptentrioConsole::adopt() {
     for (const NamedSignal& known : septentrio_signals())
         if (start_.signals.contains(known.signal)) signals.push_back(known.name);
     if (systems.empty() || signals.empty()) return;
-    const std::string system_words = fmt::format("{}", fmt::join(systems, "+")),
-                      signal_words = fmt::format("{}", fmt::join(signals, "+"));
-    settings.set(setting_group("SatelliteTracking"), {system_words});
-    settings.set(setting_group("SatelliteUsage"), {system_words});
-    settings.set(setting_group("SignalTracking"), {signal_words});
-    settings.set(setting_group("SignalUsage"), {signal_words, signal_words});
+    const std::string tracked = fmt::format("{}", fmt::join(systems, "+")),
+                      measured = fmt::format("{}", fmt::join(signals, "+"));
+    settings.set(setting_group("SatelliteTracking"), {tracked});
+    settings.set(setting_group("SatelliteUsage"), {tracked});
+    settings.set(setting_group("SignalTracking"), {measured});
+    settings.set(setting_group("SignalUsage"), {measured, measured});
 }
 
 // What measurement and solution must know.

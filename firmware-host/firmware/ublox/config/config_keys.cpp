@@ -276,26 +276,26 @@ const ConfigKey* find_config_key(std::string_view name) { return key_list().find
 
 std::span<const OutputMessage> output_messages() {
     static const std::vector<OutputMessage> messages = [] {
-        std::vector<OutputMessage> all;
+        std::vector<OutputMessage> known;
         for (const RateKeys& rate : rate_keys())
-            all.push_back(rate.message);
-        return all;
+            known.push_back(rate.message);
+        return known;
     }();
     return messages;
 }
 
 const OutputMessage* find_output_message(UbxMessageId id) {
-    const auto all = output_messages();
-    const auto found = std::lower_bound(all.begin(), all.end(), id,
+    const auto known = output_messages();
+    const auto found = std::lower_bound(known.begin(), known.end(), id,
                                         [](const OutputMessage& m, UbxMessageId wanted) { return m.id < wanted; });
-    return found != all.end() && found->id == id ? &*found : nullptr;
+    return found != known.end() && found->id == id ? &*found : nullptr;
 }
 
 const OutputMessage* find_output_message(std::string_view name) {
-    const auto all = output_messages();
+    const auto known = output_messages();
     const auto found =
-        std::find_if(all.begin(), all.end(), [name](const OutputMessage& message) { return message.name == name; });
-    return found != all.end() ? &*found : nullptr;
+        std::find_if(known.begin(), known.end(), [name](const OutputMessage& message) { return message.name == name; });
+    return found != known.end() ? &*found : nullptr;
 }
 
 std::optional<std::uint32_t> rate_key(UbxMessageId message, PortId port) {

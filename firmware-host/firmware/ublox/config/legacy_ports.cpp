@@ -198,10 +198,10 @@ ConfigOutcome legacy_msg(const LegacyContext& context, ByteSpan payload) {
     if (const auto here = decode_payload<CfgMsgCurrentPort>(payload)) {
         message = {here->message_class, here->id};
         put_rate(context.from, here->rate);
-    } else if (const auto all = decode_payload<CfgMsg>(payload)) {
-        message = {all->message_class, all->id};
+    } else if (const auto every = decode_payload<CfgMsg>(payload)) {
+        message = {every->message_class, every->id};
         for (std::size_t port = 0; port < port_count; ++port)
-            put_rate(static_cast<PortId>(port), all->rates[port]);
+            put_rate(static_cast<PortId>(port), every->rates[port]);
     }
     return knows(context.board, message) ? changes.apply() : legacy_refused();
 }
