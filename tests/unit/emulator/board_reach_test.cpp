@@ -12,7 +12,7 @@
 #include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
-#include "receiver/protocol/ubx_names.hpp"
+#include "receiver/protocol/ubx_messages.hpp"
 #include "run/fault/fault_kind.hpp"
 #include "run/fault/receiver_needs.hpp"
 #include "support/receiver_rig.hpp"
