@@ -7,6 +7,7 @@
 
 #include "base/core/words.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/ublox/config/config_handler.hpp"
 #include "firmware/ublox/config/config_keys.hpp"
 #include "firmware/ublox/config/signal_keys.hpp"
 #include "receiver/protocol/ubx_messages.hpp"
@@ -22,6 +23,9 @@ constexpr UbxMessageId version_message{0x0A, 0x04}, mon_hw{0x0A, 0x09}, mon_rf{0
     sec_sig{0x27, 0x09};
 
 bool is_ublox(const BoardProfile& board) { return board.maker == MakerKind::ublox; }
+bool has_item(const BoardProfile& board, std::uint32_t item) {
+    return firmware::is_on_the_wire(board, item) && !board.absent_keys.contains(item);
+}
 bool is_septentrio(const BoardProfile& board) { return board.maker == MakerKind::sbf; }
 
 bool has_sentence(const UsedReceiver& receiver, std::string_view name) {
@@ -171,7 +175,7 @@ bool reports_weeks(const UsedReceiver& receiver) {
 bool takes_corrections(const UsedReceiver& receiver) {
     const BoardProfile& board = receiver.board;
     const auto lets_in = [&](firmware::PortId port) {
-        return !board.absent_keys.contains(firmware::key::in_protocol(port, firmware::protocol_rtcm3));
+        return has_item(board, firmware::key::in_protocol(port, firmware::protocol_rtcm3));
     };
     return is_septentrio(board) || (is_ublox(board) && std::any_of(board.ports.begin(), board.ports.end(), lets_in));
 }
@@ -185,7 +189,7 @@ bool reports_dead_reckoning(const UsedReceiver& receiver) {
 }
 
 bool has_time_mode(const UsedReceiver& receiver) {
-    return is_ublox(receiver.board) && !receiver.board.absent_keys.contains(firmware::key::tmode_mode);
+    return is_ublox(receiver.board) && has_item(receiver.board, firmware::key::tmode_mode);
 }
 
 bool has_texts_at_start(const UsedReceiver& receiver) { return !receiver.board.identity.banner.empty(); }
@@ -211,7 +215,7 @@ bool sends_by_command_line(const UsedReceiver& receiver, UbxMessageId message) {
 bool can_track(const BoardProfile& board, Constellation constellation) {
     if (!is_ublox(board)) return true;
     for (const firmware::SystemKeys& system : firmware::system_keys_of_signals)
-        if (system.constellation == constellation) return !board.absent_keys.contains(system.enable);
+        if (system.constellation == constellation) return has_item(board, system.enable);
     return false;
 }
 
@@ -219,7 +223,7 @@ bool has_second_band(const BoardProfile& board) {
     if (!is_ublox(board)) return true;
     return std::any_of(firmware::signal_keys.begin(), firmware::signal_keys.end(), [&](const auto& key) {
         return key.signal.signal == second_signal(key.signal.constellation, board.second_band) &&
-               !board.absent_keys.contains(key.enable);
+               has_item(board, key.enable);
     });
 }
 

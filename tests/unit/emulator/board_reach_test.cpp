@@ -39,8 +39,12 @@ BoardProfile eager_board(const std::string& name) {
     board.quirks.default_interference_monitor = true;
     board.timing.answer = Seconds(0.001);
     if (board.maker == MakerKind::sbf) board.sbf_blocks = {"PVTGeodetic", "AttEuler", "RFStatus", "ReceiverTime"};
-    if (board.maker != MakerKind::ublox && board.maker != MakerKind::mtk && board.maker != MakerKind::airoha)
-        return board;
+    if (board.maker == MakerKind::mtk || board.maker == MakerKind::airoha) {
+        board.sentences.clear();
+        for (std::size_t i = 0; i < std::size(firmware::nmea_sentence_names); ++i)
+            board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});
+    }
+    if (board.maker != MakerKind::ublox) return board;
     for (const UbxMessageId message : board.messages)
         board.config[*firmware::rate_key(message, PortId::uart1)] = 1;
     board.config[firmware::key::out_protocol(PortId::uart1, firmware::protocol_ubx)] = 1;

@@ -283,8 +283,8 @@ TEST(BoardFileUblox, RefusesUnknownNamesWithTheNearest) {
                 HasSubstr("test.toml:2:1: ubx.legacy.CFG-GNS: unknown key; did you mean 'CFG-GNSS'?"));
     EXPECT_THAT(ublox_refusal("[ubx.legacy]\nCFG-GNSS = \"nak\""),
                 HasSubstr("expected one of apply ignore refuse silence"));
-    EXPECT_EQ(ublox_refusal("[config]\nCFG-RATE-MES = 1"),
-              "test.toml:2:16: config.CFG-RATE-MES: is no configuration item; did you mean 'CFG-RATE-MEAS'?");
+    EXPECT_EQ(ublox_refusal("personality = \"ublox\"\n[config]\nCFG-RATE-MES = 1"),
+              "test.toml:3:16: config.CFG-RATE-MES: is no configuration item; did you mean 'CFG-RATE-MEAS'?");
     EXPECT_THAT(
         ublox_refusal("[config]\nabsent = [\"CFG-TMOD-MODE\"]"),
         HasSubstr("holds 'CFG-TMOD-MODE', which no configuration item is called; did you mean 'CFG-TMODE-MODE'?"));
