@@ -75,6 +75,8 @@ struct PortMessage {
     Bytes bytes;
 };
 
+/// The maker's own part of a receiver; Receiver::Core has what all of them do.
+///
 /// State: the settings in force, and what the receiver's memories hold of them.
 class Maker {
 public:

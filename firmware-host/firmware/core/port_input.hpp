@@ -17,7 +17,6 @@ public:
     PortInput(ReceiverParts& parts, Handler handle, Damaged damaged)
         : parts_(parts), handle_(std::move(handle)), damaged_(std::move(damaged)) {}
 
-    /// @param listens at a time
     void receive(PortUnit& unit, ByteSpan bytes, GpsTime now);
     /// Decides what was begun long ago, as if nothing followed.
     void give_up_unfinished(PortUnit& unit, GpsTime now);

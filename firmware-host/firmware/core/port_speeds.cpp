@@ -10,7 +10,7 @@ bool PortSpeeds::holds_forced() const {
            parts_.config().port(PortId::uart1).baud == (forced_->is_setting ? forced_->speed : forced_->before);
 }
 
-// A forced speed that the board cannot be set to stands in no setting: the receiver would refuse all that it is told,
+// A forced speed that the board cannot be set to stands in no setting: the receiver would refuse all that it is sent,
 // and what it saved.
 std::uint32_t PortSpeeds::wanted(PortId port) const {
     if (port != PortId::uart1 || !holds_forced()) return parts_.config().port(port).baud;
