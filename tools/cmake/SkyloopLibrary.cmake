@@ -102,19 +102,26 @@ function(skyloop_test_code target)
     endforeach()
 endfunction()
 
-# skyloop_units(TARGET SOURCE …): which files are compiled together: of a room, those of one folder; SKYLOOP_UNIT_FILES at a time
-# where that is set.
+# skyloop_units(TARGET SOURCE …): which files are compiled together: of a room, those of one folder, and what small folders
+# hold; SKYLOOP_UNIT_FILES at a time where that is set.
 function(skyloop_units target)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ${SKYLOOP_UNITY} UNITY_BUILD_BATCH_SIZE ${SKYLOOP_UNIT_FILES})
     if(SKYLOOP_UNIT_FILES GREATER 0)
         return()
     endif()
     set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+    set(small 6)
     foreach(source IN LISTS ARGN)
         get_filename_component(path ${source} ABSOLUTE)
         file(RELATIVE_PATH path ${CMAKE_CURRENT_SOURCE_DIR} ${path})
         string(REGEX MATCH "^[^/]+/" folder ${path})
         string(REGEX REPLACE "/$" "" folder "${folder}")
+        set(files ${ARGN})
+        list(FILTER files INCLUDE REGEX "/${folder}/")
+        list(LENGTH files count)
+        if(count LESS small)
+            set(folder "")
+        endif()
         set_source_files_properties(${source} PROPERTIES UNITY_GROUP "room_${folder}")
     endforeach()
 endfunction()
