@@ -186,7 +186,7 @@ void Receiver::Core::reply(PortUnit& unit, CommandOutcome& outcome, GpsTime now)
         parts_.outbox.plan(at, [this, port, messages = std::move(outcome.answers)](GpsTime t) {
             std::vector<Bytes> let_out;
             for (const Bytes& message : messages)
-                if (parts_.lets_out(port, protocol_of(message))) let_out.push_back(message);
+                if (parts_.config().port(port).lets_out(protocol_of(message))) let_out.push_back(message);
             parts_.send(port, let_out, t);
         });
     if (way == SpeedChangeAnswer::at_old_speed) speeds_.plan_changes(at);

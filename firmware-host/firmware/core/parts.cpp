@@ -12,11 +12,6 @@ BoardProfile with_sentences(BoardProfile board) {
     return board;
 }
 
-bool passes(const PortProtocols& protocols, UbxMessageId message) {
-    if (message.message_class == class_nmea || message.message_class == class_pubx) return protocols.nmea;
-    return message.message_class == class_rtcm ? protocols.rtcm3 : protocols.ubx;
-}
-
 }  // namespace
 
 UbxMessageId protocol_of(const Bytes& message) {
@@ -46,11 +41,6 @@ ReportContext ReceiverParts::context(PortId port) {
 
 ReportContext ReceiverParts::context(PortId port, const NavigationState& state) const {
     return {board, config(), state, statuses, port};
-}
-
-bool ReceiverParts::lets_out(PortId port, UbxMessageId message) const {
-    const PortConfig& of_port = config().port(port);
-    return of_port.on && passes(of_port.out, message);
 }
 
 void ReceiverParts::send(PortId port, const std::vector<Bytes>& messages, GpsTime now) {

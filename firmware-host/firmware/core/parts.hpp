@@ -30,8 +30,6 @@ struct ReceiverParts {
     [[nodiscard]] ReportContext context(PortId port, const NavigationState& state) const;
     void look_at_ports();
 
-    /// Whether a port sends messages of that protocol.
-    [[nodiscard]] bool lets_out(PortId port, UbxMessageId message) const;
     /// Queues messages, unless the receiver is silent.
     void send(PortId port, const std::vector<Bytes>& messages, GpsTime now);
     void send_in_turn(PortId port, const std::vector<ByteSpan>& messages, GpsTime now);

@@ -14,6 +14,7 @@
 #include "firmware/core/port_id.hpp"
 #include "receiver/protocol/nmea_satellites.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
+#include "receiver/protocol/ubx_frame.hpp"
 #include "world/flow/receiver_settings.hpp"
 
 namespace skyloop::firmware {
@@ -105,6 +106,13 @@ struct PortConfig {
     PortProtocols in{}, out{};
     /// Texts for people that are let out, a bit for each level: 0 error, 1 warning, 2 notice, 3 test, 4 debug.
     std::uint64_t ubx_texts = 0, nmea_texts = 7;
+
+    /// Whether the port sends messages of that protocol; of UBX, whatever the message.
+    [[nodiscard]] bool lets_out(UbxMessageId message) const {
+        if (!on) return false;
+        if (message.message_class == class_nmea || message.message_class == class_pubx) return out.nmea;
+        return message.message_class == class_rtcm ? out.rtcm3 : out.ubx;
+    }
 };
 
 /// How sentences look, and what they leave out.

@@ -224,18 +224,12 @@ CommandOutcome UbloxMaker::receive_sentence(ByteSpan line, const Situation& aske
     return outcome;
 }
 
-bool UbloxMaker::lets_out(PortId port, UbxMessageId message) const {
-    const PortConfig& of_port = config().port(port);
-    if (!of_port.on) return false;
-    if (message.message_class == class_nmea || message.message_class == class_pubx) return of_port.out.nmea;
-    return message.message_class == class_rtcm ? of_port.out.rtcm3 : of_port.out.ubx;
-}
-
 std::optional<std::vector<PortMessage>> UbloxMaker::correction_reports(const CorrectionAnswer& answer,
                                                                        const FirmwareFaults& faults) const {
     std::vector<PortMessage> reports;
     const auto report = [&](PortId port, UbxMessageId message, const Bytes& frame) {
-        if (store_.rate(message, port) > 0 && lets_out(port, message) && !faults.withheld.contains(message))
+        if (store_.rate(message, port) > 0 && config().port(port).lets_out(message) &&
+            !faults.withheld.contains(message))
             reports.push_back({port, frame});
     };
     for (const PortId port : board().ports) {
@@ -253,7 +247,8 @@ const std::vector<UbloxMaker::Periodic>& UbloxMaker::periodic_messages(PortId po
     if (!is_new) return entry->second;
     for (const UbxMessageId message : board().messages) {
         const int rate = store_.rate(message, port);
-        if (rate > 0 && lets_out(port, message)) entry->second.push_back({message, static_cast<std::uint64_t>(rate)});
+        if (rate > 0 && config().port(port).lets_out(message))
+            entry->second.push_back({message, static_cast<std::uint64_t>(rate)});
     }
     return entry->second;
 }

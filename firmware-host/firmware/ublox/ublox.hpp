@@ -47,7 +47,6 @@ private:
         std::uint64_t every = 1;  ///< epochs
     };
     [[nodiscard]] const std::vector<Periodic>& periodic_messages(PortId port);
-    [[nodiscard]] bool lets_out(PortId port, UbxMessageId message) const;
     [[nodiscard]] bool is_due(const Periodic& message, PortId port, const EpochMessages& made);
 
     ReceiverSettings base_;  ///< of the run, where items are as the factory left them

@@ -205,8 +205,7 @@ namespace {
 
 constexpr ConfigKey private_items[] = {
     // CFG-PRT, by port: the pin that says that there is something to read; bit 4 of the mode of a UART; RTCM 2 as
-    // input,
-    // which receivers had up to M8.
+    // input, which receivers had up to M8.
     {0x30FD0001, "CFG-PRT-TXREADY_I2C", u2, 0, kept},
     {0x30FD0002, "CFG-PRT-TXREADY_UART1", u2, 0, kept},
     {0x30FD0003, "CFG-PRT-TXREADY_UART2", u2, 0, kept},
