@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 
@@ -57,11 +58,18 @@ std::optional<double> real_field(std::string_view field) {
     field = trimmed(field);
     if (field.empty()) return 0.0;
     if (field.starts_with('+')) field.remove_prefix(1);
-    std::array<char, 40> digits{};
+    std::array<char, 40> digits;
     if (field.empty() || field.size() > digits.size()) return std::nullopt;
-    for (std::size_t i = 0; i < field.size(); ++i)
-        digits[i] = field[i] == 'D' || field[i] == 'd' ? 'e' : field[i];
-    return number_in<double>({digits.data(), field.size()});
+    // Before the digits and the sign of the exponent.
+    std::size_t letter = field.size() - 1;
+    while (letter > 0 && field[letter] <= '9' && field[letter] != '.')
+        --letter;
+    if (field[letter] == 'D' || field[letter] == 'd') {
+        std::copy(field.begin(), field.end(), digits.begin());
+        digits[letter] = 'e';
+        field = {digits.data(), field.size()};
+    }
+    return number_in<double>(field);
 }
 
 std::optional<int> whole_field(std::string_view field) {

@@ -136,7 +136,7 @@ NavigationMessage galileo_message(int sources) {
 // Eight lines (RINEX 3.05, tables A6, A8, A12, A14, A18).
 class KeplerReading {
 public:
-    KeplerReading(const RecordKind& kind, RecordFields fields) : kind_(kind), fields_(std::move(fields)) {
+    KeplerReading(const RecordKind& kind, RecordFields& fields) : kind_(kind), fields_(fields) {
         eph_.satellite = kind.satellite;
     }
 
@@ -209,8 +209,8 @@ private:
                        fmt::format("week {}, that of the epoch", beidou() ? toe_week - bdt_first_week : toe_week));
     }
 
-    RecordKind kind_;
-    RecordFields fields_;
+    const RecordKind& kind_;
+    RecordFields& fields_;
     KeplerEphemeris eph_;
 };
 
@@ -237,7 +237,7 @@ void check_radius(RecordFields& fields, const std::array<double, 3>& position, d
 }
 
 // Four lines, or the five of version 3.05 and later (RINEX 3.05, table A10).
-tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kind, RecordFields fields) {
+tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kind, RecordFields& fields) {
     GlonassEphemeris eph;
     eph.satellite = kind.satellite;
     eph.clock_bias = fields.number({0, 1, "the clock offset", -1, 1, false});
@@ -267,7 +267,7 @@ tl::expected<GlonassEphemeris, Defect> read_glonass_record(const RecordKind& kin
 }
 
 // Four lines (RINEX 3.05, table A16).
-tl::expected<SbasEphemeris, Defect> read_sbas_record(const RecordKind& kind, RecordFields fields) {
+tl::expected<SbasEphemeris, Defect> read_sbas_record(const RecordKind& kind, RecordFields& fields) {
     SbasEphemeris eph;
     eph.satellite = kind.satellite;
     eph.clock_bias = fields.number({0, 1, "the clock offset", -1, 1, false});
@@ -297,11 +297,11 @@ tl::expected<Ephemeris, Defect> read_record(const RecordKind& kind, std::span<co
     RecordFields fields(lines, kind.major);
     switch (kind.satellite.constellation) {
         case Constellation::glonass:
-            return read_glonass_record(kind, std::move(fields));
+            return read_glonass_record(kind, fields);
         case Constellation::sbas:
-            return read_sbas_record(kind, std::move(fields));
+            return read_sbas_record(kind, fields);
         default:
-            return KeplerReading(kind, std::move(fields)).read();
+            return KeplerReading(kind, fields).read();
     }
 }
 
