@@ -50,6 +50,7 @@ BOARDS = {board.name: board for board in (
     Board("ublox-f9p-hpg113", 38400, 9, (27, 12)),
     Board("ublox-f9p-hpg150", 38400, 9, (27, 50)),
     Board("ublox-f9p-15b", 38400, 9, (27, 40)),
+    Board("ublox-x20p", 38400, 20, (50, 2)),
     Board("nmea-generic", 9600),
     Board("mtk3339", 9600),
     Board("airoha-ag33xx", 115200),

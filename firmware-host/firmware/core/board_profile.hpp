@@ -125,6 +125,7 @@ struct Quirks {
     ValueConfigSupport value_config = ValueConfigSupport::full;
     bool single_key_valget = false;  ///< a VALGET for several keys is refused (M10 SPG 5.10)
     bool empty_valget_page = false;  ///< a VALGET page past the last item is answered (X20P; ZED-F9P: ACK-NAK)
+    bool l5_health_by_version_1 = false;  ///< CFG-SIGNAL-HEALTH_L5 is set by version 1 of CFG-VALSET alone (DAN-F10N)
     bool hardware_reset_clears_battery = true;
     SpeedChangeAnswer speed_change = SpeedChangeAnswer::at_new_speed;
     bool answers_unknown_nmea = false;  ///< "… inv format" (M8)

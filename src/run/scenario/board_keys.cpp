@@ -110,6 +110,7 @@ void read_board_quirks(TableReader& table, firmware::Quirks& quirks) {
                quirks.value_config);
     table.boolean("single_key_valget", quirks.single_key_valget);
     table.boolean("empty_valget_page", quirks.empty_valget_page);
+    table.boolean("l5_health_by_version_1", quirks.l5_health_by_version_1);
     table.boolean("hardware_reset_clears_battery", quirks.hardware_reset_clears_battery);
     table.word("speed_change_answer",
                {{"at_new_speed", SpeedChangeAnswer::at_new_speed},

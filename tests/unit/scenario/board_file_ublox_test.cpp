@@ -36,10 +36,11 @@ bool sends(const BoardProfile& board, std::string_view name) {
     return std::find(all.begin(), all.end(), firmware::find_output_message(name)->id) != all.end();
 }
 
-Verdict set_in_ram(const BoardProfile& board, std::initializer_list<std::pair<std::uint32_t, std::uint64_t>> pairs) {
+Verdict set_in_ram(const BoardProfile& board, std::initializer_list<std::pair<std::uint32_t, std::uint64_t>> pairs,
+                   std::uint8_t version = 0) {
     ConfigStore store(firmware::factory_config(board));
     firmware::ValueConfig values(board, store);
-    CfgValset message{.version = 0, .layers = 1, .transaction = 0, .reserved = 0, .pairs = {}};
+    CfgValset message{.version = version, .layers = 1, .transaction = 0, .reserved = 0, .pairs = {}};
     for (const auto& [key, value] : pairs)
         message.pairs.push_back({key, value});
     return values.valset(encode_payload(message)).verdict;
@@ -446,7 +447,10 @@ TEST(ShippedBoards, TheF10IsAnM10WithL5AndWithoutGlonass) {
     EXPECT_EQ(factory_of(f10, "CFG-SIGNAL-HEALTH_L5"), 0U);
     EXPECT_EQ(factory_of(f10, "CFG-SIGNAL-NAVIC_ENA"), 0U);
     // PX4's and a user's way to override the health of L5, and a question for GLONASS (satpulse #71).
-    EXPECT_EQ(set_in_ram(f10, {{0x10320001, 1}}), Verdict::acknowledge);
+    EXPECT_EQ(set_in_ram(f10, {{0x10320001, 1}}), Verdict::refuse) << "by version 0 (PX4-GPSDrivers #181)";
+    EXPECT_EQ(set_in_ram(f10, {{0x10320001, 1}}, 1), Verdict::acknowledge);
+    for (const char* board : {"ublox-f9p-15b", "ublox-x20p"})
+        EXPECT_EQ(set_in_ram(shipped_board(board), {{0x10320001, 1}}), Verdict::acknowledge) << board;
     EXPECT_EQ(set_in_ram(f10, {{0x10310025, 0}}), Verdict::refuse);
     EXPECT_EQ(f10.legacy.size(), 1U);
     for (const char* port : {"I2C", "UART1", "SPI"})

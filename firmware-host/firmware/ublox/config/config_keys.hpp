@@ -103,6 +103,7 @@ inline constexpr std::uint32_t nmea_protver = 0x20930001, nmea_maxsvs = 0x209300
 inline constexpr std::uint32_t ant_voltage_control = 0x10A3002E, ant_short_detect = 0x10A3002F,
                                ant_open_detect = 0x10A30031, ant_power_down = 0x10A30033, ant_recover = 0x10A30035;
 inline constexpr std::uint32_t tmode_mode = 0x20030001;
+inline constexpr std::uint32_t health_l5 = 0x10320001;  ///< takes L5 of GPS for as healthy as its L1
 inline constexpr std::uint32_t pm_operate_mode = 0x20D00001, pm_update_period = 0x40D00002,
                                pm_search_period = 0x40D00003, pm_grid_offset = 0x40D00004, pm_on_time = 0x30D00005,
                                pm_least_acquisition = 0x20D00006, pm_longest_acquisition = 0x20D00007,

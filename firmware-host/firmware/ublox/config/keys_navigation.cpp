@@ -184,7 +184,7 @@ constexpr ConfigKey navigation_items[] = {
     {0x10310027, "CFG-SIGNAL-0x10310027", l, 1, f9p},
     {0x10310028, "CFG-SIGNAL-BDS_B2A_ENA", l, 0, f10 | f9p_15b | x20p},
     {0x2031003A, "CFG-SIGNAL-PLAN", e1, 0, x20p},
-    {0x10320001, "CFG-SIGNAL-HEALTH_L5", l, 0, f10 | f9p_15b},
+    {0x10320001, "CFG-SIGNAL-HEALTH_L5", l, 0, f10 | f9p_15b | x20p},
     {0x20340009, "CFG-BDS-D1D2_NAVDATA", e1, 0, m10_530 | x20p},
     {0x10340014, "CFG-BDS-USE_GEO_PRN", l, 0, m10 | f10 | f9},
     {0x10350005, "CFG-GAL-USE_OSNMA", l, 0, f9p_150 | x20p},

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 constexpr std::uint32_t tp_period = 0x40050002, tp_period_lock = 0x40050003, tp_frequency = 0x40050024,
                         tp_frequency_lock = 0x40050025, tp_pulse_def = 0x20050023, tp_enabled = 0x10050007,
                         tp_use_locked = 0x10050009, tp_time_grid = 0x2005000C;
-constexpr std::uint32_t use_ana = 0x10230001, rtcm_station_out = 0x30090001, l5_as_healthy_as_l1 = 0x10320001;
+constexpr std::uint32_t use_ana = 0x10230001, rtcm_station_out = 0x30090001;
 
 double number(const ConfigStore& store, std::uint32_t item) { return static_cast<double>(store.value(item)); }
 double signed_number(const ConfigStore& store, std::uint32_t item) {
@@ -251,7 +251,7 @@ ReceiverConfig receiver_config(const ConfigStore& store, const BoardProfile& boa
     config.reports_spoofing = board.identity.generation >= first_with_spoofing_detection;
     config.reports_jamming_elsewhere = knows(board, SecSig1::message_id);
     config.predicts_orbits = store.flag(use_ana);
-    config.trusts_l5 = !store.has(l5_as_healthy_as_l1) || store.flag(l5_as_healthy_as_l1);
+    config.trusts_l5 = !store.has(key::health_l5) || store.flag(key::health_l5);
     config.watches_interference =
         store.has(key::itfm_enable) ? store.flag(key::itfm_enable) : board.quirks.default_interference_monitor;
     config.watches_antenna =

@@ -95,7 +95,9 @@ ConfigOutcome ValueConfig::valset(ByteSpan payload) {
     if (!good) return cancel(), refused();
     Change change{.layers = message->layers, .deleting = false, .items = {}};
     for (const ConfigPair& pair : message->pairs) {
-        if (!is_settable(pair.key, pair.value)) return cancel(), refused();
+        const bool too_old =
+            message->version == 0 && pair.key == key::health_l5 && board_.quirks.l5_health_by_version_1;
+        if (too_old || !is_settable(pair.key, pair.value)) return cancel(), refused();
         change.items[pair.key] = cut_to_size(pair.key, pair.value);
     }
     return take(message->version == 0 ? std::uint8_t{no_transaction} : message->transaction.raw, std::move(change));
