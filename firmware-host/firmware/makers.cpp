@@ -12,22 +12,24 @@ namespace skyloop::firmware {
 namespace {
 
 // In the order of MakerKind.
-constexpr auto makers = std::to_array<MakerRow>({
-    {"mute", make_sentences},
-    {"ublox", make_ublox, ublox_refuses},
-    {"mtk", make_mediatek},
-    {"airoha", make_airoha},
-    {"msp", make_msp},
-    {"msp-v1", make_msp_v1},
-    {"mavlink", make_mavlink},
-    {"sbf", make_septentrio},
+constexpr auto all_makers = std::to_array<MakerRow>({
+    {"mute", make_sentences, sentence_abilities},
+    {"ublox", make_ublox, ublox_abilities, ublox_refuses},
+    {"mtk", make_mediatek, mediatek_abilities},
+    {"airoha", make_airoha, airoha_abilities},
+    {"msp", make_msp, msp_abilities},
+    {"msp-v1", make_msp_v1, msp_v1_abilities},
+    {"mavlink", make_mavlink, mavlink_abilities},
+    {"sbf", make_septentrio, septentrio_abilities},
 });
 
 }  // namespace
 
-std::span<const MakerRow> maker_rows() { return makers; }
+std::span<const MakerRow> maker_rows() { return all_makers; }
 
-const MakerRow& maker_row(MakerKind kind) { return makers.at(static_cast<std::size_t>(kind)); }
+const MakerRow& maker_row(MakerKind kind) { return all_makers.at(static_cast<std::size_t>(kind)); }
+
+Abilities abilities(const BoardProfile& board) { return maker_row(board.maker).abilities(board); }
 
 std::optional<RefusedOptions> refused_options(const BoardProfile& board, const ReceiverOptions& options) {
     const MakerRow& row = maker_row(board.maker);

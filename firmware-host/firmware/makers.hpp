@@ -11,5 +11,6 @@ namespace skyloop::firmware {
 std::span<const MakerRow> maker_rows();
 /// The row of a kind of receiver.
 const MakerRow& maker_row(MakerKind kind);
+Abilities abilities(const BoardProfile& board);
 
 }  // namespace skyloop::firmware

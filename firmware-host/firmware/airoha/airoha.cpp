@@ -182,4 +182,8 @@ std::unique_ptr<Maker> make_airoha(const BoardProfile& board, const ReceiverOpti
     return std::make_unique<NumberedCommandMaker>(board, options, execute_pair);
 }
 
+Abilities airoha_abilities(const BoardProfile&) {
+    return {.choice = Abilities::MessageChoice::rates, .time = true, .calendar = true, .own_prefix = "PAIR"};
+}
+
 }  // namespace skyloop::firmware

@@ -6,5 +6,6 @@
 namespace skyloop::firmware {
 
 std::unique_ptr<Maker> make_airoha(const BoardProfile& board, const ReceiverOptions& options);
+Abilities airoha_abilities(const BoardProfile& board);
 
 }  // namespace skyloop::firmware

@@ -135,11 +135,40 @@ private:
     const BoardProfile& board_;
 };
 
-/// A kind of receiver: what it is called, and how it is made.
+/// What a receiver can do as its board is built, whatever a client may configure: what checks, faults and expectations
+/// ask.
+struct Abilities {
+    /// What decides which messages an epoch has: the factory, a rate for each that is listed, or a command line.
+    enum class MessageChoice { factory, rates, command_line };
+    MessageChoice choice = MessageChoice::factory;
+    bool ubx = false;  ///< takes the configuration and the polls of u-blox
+
+    // Reports that are no sentences.
+    bool version = false;           ///< MON-VER
+    bool hardware_monitor = false;  ///< MON-HW, MON-RF
+    bool jamming = false, spoofing = false, heading = false, accuracies = false, weeks = false;
+    bool time = false, calendar = false;
+    bool dead_reckoning = true;  ///< it has a word for it
+
+    bool corrections = false;  ///< takes RTCM
+    bool time_mode = false;    ///< can solve for time alone
+    /// That it can be set to track; nothing: no document says.
+    std::optional<std::vector<Constellation>> constellations{};
+    std::optional<bool> second_band{};  ///< the same
+
+    std::vector<UbxMessageId> answers{};   ///< what it sends when it is asked
+    std::vector<std::string_view> more{};  ///< what else it sends, as dialogues call it
+    std::string_view own_prefix{};         ///< of answers of which there are more than are listed anywhere
+
+    [[nodiscard]] bool takes_commands() const { return choice != MessageChoice::factory; }
+};
+
+/// A kind of receiver: what it is called, how it is made, and what it can do.
 struct MakerRow {
     std::string_view name;
     /// @param board it must outlive what is made
     std::unique_ptr<Maker> (*make)(const BoardProfile& board, const ReceiverOptions& options);
+    Abilities (*abilities)(const BoardProfile& board);
     /// refused_options(); null: it takes all.
     std::optional<RefusedOptions> (*refuses)(const BoardProfile& board, const ReceiverOptions& options) = nullptr;
 };

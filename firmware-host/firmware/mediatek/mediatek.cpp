@@ -209,4 +209,8 @@ std::unique_ptr<Maker> make_mediatek(const BoardProfile& board, const ReceiverOp
     return std::make_unique<NumberedCommandMaker>(board, options, execute_pmtk);
 }
 
+Abilities mediatek_abilities(const BoardProfile&) {
+    return {.choice = Abilities::MessageChoice::rates, .time = true, .calendar = true, .own_prefix = "PMTK"};
+}
+
 }  // namespace skyloop::firmware

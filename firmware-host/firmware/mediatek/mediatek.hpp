@@ -6,5 +6,6 @@
 namespace skyloop::firmware {
 
 std::unique_ptr<Maker> make_mediatek(const BoardProfile& board, const ReceiverOptions& options);
+Abilities mediatek_abilities(const BoardProfile& board);
 
 }  // namespace skyloop::firmware

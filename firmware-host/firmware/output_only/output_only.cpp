@@ -36,4 +36,27 @@ std::unique_ptr<Maker> make_mavlink(const BoardProfile& board, const ReceiverOpt
     return std::make_unique<FrameMaker>(board, options, mavlink_messages);
 }
 
+Abilities sentence_abilities(const BoardProfile&) { return {.time = true, .calendar = true}; }
+
+Abilities msp_abilities(const BoardProfile&) {
+    return {.heading = true,
+            .accuracies = true,
+            .weeks = true,
+            .time = true,
+            .calendar = true,
+            .dead_reckoning = false,
+            .more = {"MSP"}};
+}
+
+Abilities msp_v1_abilities(const BoardProfile&) { return {.dead_reckoning = false, .more = {"MSP"}}; }
+
+Abilities mavlink_abilities(const BoardProfile&) {
+    return {.heading = true,
+            .accuracies = true,
+            .weeks = true,
+            .time = true,
+            .dead_reckoning = false,
+            .more = {"MAVLink"}};
+}
+
 }  // namespace skyloop::firmware

@@ -28,4 +28,9 @@ std::unique_ptr<Maker> make_msp(const BoardProfile& board, const ReceiverOptions
 std::unique_ptr<Maker> make_msp_v1(const BoardProfile& board, const ReceiverOptions& options);
 std::unique_ptr<Maker> make_mavlink(const BoardProfile& board, const ReceiverOptions& options);
 
+Abilities sentence_abilities(const BoardProfile& board);
+Abilities msp_abilities(const BoardProfile& board);
+Abilities msp_v1_abilities(const BoardProfile& board);
+Abilities mavlink_abilities(const BoardProfile& board);
+
 }  // namespace skyloop::firmware

@@ -73,4 +73,19 @@ std::unique_ptr<Maker> make_septentrio(const BoardProfile& board, const Receiver
     return std::make_unique<SeptentrioMaker>(board, options);
 }
 
+Abilities septentrio_abilities(const BoardProfile&) {
+    return {.choice = Abilities::MessageChoice::command_line,
+            .jamming = true,  // RFStatus
+            .spoofing = true,
+            .heading = true,
+            .accuracies = true,
+            .weeks = true,
+            .time = true,
+            .calendar = true,
+            .dead_reckoning = false,
+            .corrections = true,
+            .more = {"SBF"},
+            .own_prefix = "RTCM-"};
+}
+
 }  // namespace skyloop::firmware

@@ -34,5 +34,6 @@ private:
 };
 
 std::unique_ptr<Maker> make_septentrio(const BoardProfile& board, const ReceiverOptions& options);
+Abilities septentrio_abilities(const BoardProfile& board);
 
 }  // namespace skyloop::firmware

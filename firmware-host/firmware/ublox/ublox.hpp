@@ -63,6 +63,7 @@ private:
 
 std::unique_ptr<Maker> make_ublox(const BoardProfile& board, const ReceiverOptions& options);
 std::optional<RefusedOptions> ublox_refuses(const BoardProfile& board, const ReceiverOptions& options);
+Abilities ublox_abilities(const BoardProfile& board);
 
 /// The id of a client's sentence, for PUBX and the standard polls; 00-00 of others.
 UbxMessageId sentence_id(const SentenceView& sentence);

@@ -107,8 +107,6 @@ constexpr UbxMessageId cfg_rst{0x06, 0x04}, cfg_valset{0x06, 0x8A}, cfg_valdel{0
     nav_resetodo{0x01, 0x10}, nav_odo{0x01, 0x09}, pubx_rates{0xF1, 0x40}, pubx_port{0xF1, 0x41};
 constexpr std::string_view no_ublox = "is no u-blox receiver and has no such messages";
 
-bool has_ubx(const UsedReceiver& receiver) { return receiver.board.maker == firmware::MakerKind::ublox; }
-
 bool is_of_values(UbxMessageId id) { return id >= cfg_valset && id <= cfg_valdel; }
 
 // As LegacyConfig does with a message of class CFG.
@@ -137,14 +135,14 @@ bool is_answered(const BoardProfile& board, UbxMessageId id) {
 std::string why_not_answered(const UsedReceiver& receiver, std::string_view name) {
     const auto id = find_message(name);
     if (!id) return {};
-    if (!has_ubx(receiver)) return std::string(no_ublox);
+    if (!can<&firmware::Abilities::ubx>(receiver)) return std::string(no_ublox);
     return is_answered(receiver.board, *id) ? std::string() : fmt::format("never answers {}", name);
 }
 
 std::string why_not_refused(const UsedReceiver& receiver, std::string_view name) {
     const auto id = find_message(name);
     if (!id) return {};
-    if (!has_ubx(receiver)) return std::string(no_ublox);
+    if (!can<&firmware::Abilities::ubx>(receiver)) return std::string(no_ublox);
     const bool refused = id->message_class == firmware::class_cfg && *id != cfg_rst &&
                          answer_to(receiver.board, *id) == firmware::LegacyAnswer::refuse;
     return refused ? fmt::format("refuses {} anyway", name) : std::string();
@@ -161,7 +159,7 @@ std::string why_not_withheld(const UsedReceiver& receiver, std::string_view name
 std::string why_no_item(const UsedReceiver& receiver, std::string_view name) {
     const firmware::ConfigKey* key = firmware::find_config_key(upper_case(name));
     if (key == nullptr) return {};
-    if (!has_ubx(receiver) || receiver.board.quirks.value_config != firmware::ValueConfigSupport::full)
+    if (!can<&firmware::Abilities::ubx>(receiver) || receiver.board.quirks.value_config != firmware::ValueConfigSupport::full)
         return "takes no CFG-VALSET";
     return firmware::factory_config(receiver.board).contains(key->id)
                ? std::string()

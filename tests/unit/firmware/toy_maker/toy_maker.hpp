@@ -59,6 +59,7 @@ private:
 
 inline constexpr MakerRow toy_row{"toy", [](const BoardProfile& board, const ReceiverOptions& options) {
                                       return std::unique_ptr<Maker>(std::make_unique<ToyMaker>(board, options));
-                                  }};
+                                  },
+                                  [](const BoardProfile&) { return Abilities{.own_prefix = "PTOY"}; }};
 
 }  // namespace skyloop::firmware
