@@ -1,6 +1,7 @@
-"""tools/validate: the presets lie within the bands of the real receivers that they stand for."""
+"""tools/validate: what lay within the bands of real receivers still does."""
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -10,6 +11,8 @@ TOOL = pathlib.Path(__file__).resolve().parents[2] / "tools" / "validate"
 
 if not (pathlib.Path(SHARED) / "receivers").is_dir():
     skip("no folder of real receivers' records")
-result = subprocess.run([sys.executable, TOOL, "--program", os.environ["SKYLOOP"], "--data", SHARED, "--seeds", "5"],
+if not all(shutil.which(tool) for tool in ("rnx2rtkp", "convbin")):
+    skip("no rnx2rtkp and convbin")
+result = subprocess.run([sys.executable, TOOL, "--program", os.environ["SKYLOOP"], "--data", SHARED, "--short"],
                         check=False)
 sys.exit(result.returncode)
