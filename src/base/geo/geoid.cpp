@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <GeographicLib/Geoid.hpp>
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <string_view>
 #include <system_error>
@@ -39,6 +41,17 @@ Result<Geoid> Geoid::open(const std::filesystem::path& grid_file) {
 
 Metres Geoid::undulation(Angle latitude, Angle longitude) const {
     return Metres((*grid_)(latitude.deg(), longitude.deg()));
+}
+
+Metres Geoid::undulation(Angle latitude, Angle longitude, double step_deg) const {
+    if (!(step_deg > 0)) return undulation(latitude, longitude);
+    const auto cell = [step_deg](double degrees) { return std::floor(degrees / step_deg) * step_deg; };
+    const double south = std::min(cell(latitude.deg()), 90 - step_deg), west = cell(longitude.deg());
+    const double up = (latitude.deg() - south) / step_deg, right = (longitude.deg() - west) / step_deg;
+    const auto row = [&](double at) {
+        return (1 - right) * (*grid_)(at, west) + right * (*grid_)(at, west + step_deg);
+    };
+    return Metres((1 - up) * row(south) + up * row(south + step_deg));
 }
 
 }  // namespace skyloop::inline base

@@ -30,6 +30,7 @@ struct SensorContext {
     std::uint64_t seed = 1;
     const Geoid* geoid = nullptr;  ///< of the receiver; must outlive the model; without one the undulation is 0
     LeapSeconds leap_seconds = LeapSeconds::announced();
+    double geoid_step_deg = 0;  ///< Geoid::undulation()
 };
 
 /// Which model, and the parameters of each: only those of `kind` are read.

@@ -104,7 +104,7 @@ constexpr MetresPerSecond unknown_velocity{20};
 }  // namespace
 
 FixBuilder::FixBuilder(const SensorContext& context, SelectionRule rule)
-    : rule_(rule), geoid_(context.geoid), leap_seconds_(context.leap_seconds) {
+    : rule_(rule), geoid_(context.geoid), geoid_step_deg_(context.geoid_step_deg), leap_seconds_(context.leap_seconds) {
     rule_.elevation_mask = context.selection.elevation_mask;
 }
 
@@ -127,7 +127,8 @@ Fix FixBuilder::start(const TruthState& truth, const SkyView& sky, const Arrival
 
 void FixBuilder::place(Fix& fix, const Position<Ecef>& position, Metres deviation) {
     fix.position = to_geodetic(position);
-    if (geoid_ != nullptr) fix.geoid_undulation = geoid_->undulation(fix.position.latitude, fix.position.longitude);
+    if (geoid_ != nullptr)
+        fix.geoid_undulation = geoid_->undulation(fix.position.latitude, fix.position.longitude, geoid_step_deg_);
     const GroundMotion motion = motion_.next({fix.time, fix.position});
     fix.velocity = motion.velocity;
     fix.speed = motion.speed;

@@ -108,6 +108,7 @@ private:
 
     SelectionRule rule_;
     const Geoid* geoid_;
+    double geoid_step_deg_;
     LeapSeconds leap_seconds_;
     MotionOfFixes motion_;
     std::optional<Placed> last_;  // of `motion_`

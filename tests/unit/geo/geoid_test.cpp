@@ -38,6 +38,22 @@ private:
     std::optional<Geoid> geoid_;
 };
 
+// u-blox's modules: every 10 degrees, linear between. What four of them told where they stood was 56.0, -30.0, -21.35
+// and 47.13 m (docs/fidelity.md).
+TEST_F(BuiltGeoid, IsLinearBetweenTheNodesOfACoarseGrid) {
+    const auto coarse = [&](double latitude, double longitude) {
+        return geoid().undulation(Angle::degrees(latitude), Angle::degrees(longitude), 10).value();
+    };
+    EXPECT_DOUBLE_EQ(coarse(50, -10), undulation_m(geoid(), 50, -10));
+    EXPECT_NEAR(coarse(55, -10), (undulation_m(geoid(), 50, -10) + undulation_m(geoid(), 60, -10)) / 2, 1e-9);
+    EXPECT_NEAR(coarse(90, 12), undulation_m(geoid(), 90, 0), 0.01);
+    EXPECT_NEAR(coarse(-90, -180), undulation_m(geoid(), -90, 0), 0.01);
+    EXPECT_NEAR(coarse(53.288, -8.9823), 56.4, 0.2);
+    EXPECT_NEAR(coarse(44.0688, -121.314), -21.5, 0.1);
+    EXPECT_DOUBLE_EQ(geoid().undulation(Angle::degrees(53), Angle::degrees(-9), 0).value(),
+                     undulation_m(geoid(), 53, -9));
+}
+
 TEST_F(BuiltGeoid, AgreesWithTheOracle) {
     for (const test::OracleRow& row : test::oracle_rows("geoid_egm96.csv")) {
         SCOPED_TRACE(row.id());
