@@ -123,8 +123,8 @@ struct CorrectionAbility {
 /// Where units of one model differ, or no document says what it does: each a key of the board file.
 struct Quirks {
     ValueConfigSupport value_config = ValueConfigSupport::full;
-    bool single_key_valget = false;  ///< a VALGET for several keys is refused (M10 SPG 5.10)
-    bool empty_valget_page = false;  ///< a VALGET page past the last item is answered (X20P; ZED-F9P: ACK-NAK)
+    bool single_key_valget = false;       ///< a VALGET for several keys is refused (M10 SPG 5.10)
+    bool empty_valget_page = false;       ///< a VALGET page past the last item is answered (X20P; ZED-F9P: ACK-NAK)
     bool l5_health_by_version_1 = false;  ///< CFG-SIGNAL-HEALTH_L5 is set by version 1 of CFG-VALSET alone (DAN-F10N)
     bool hardware_reset_clears_battery = true;
     SpeedChangeAnswer speed_change = SpeedChangeAnswer::at_new_speed;
@@ -218,6 +218,9 @@ struct BoardProfile {
     std::vector<SentenceRate> sentences;  ///< factory output
     /// And of a Septentrio, blocks and groups of them; none: it is silent until it is configured.
     std::vector<std::string> sbf_blocks;
+    /// How it measures and solves, as TOML for the modern model: the tables clock, tracking, acquisition and solution.
+    std::string modern;
+    double geoid_step_deg = 0;  ///< of the grid of its geoid (EGM96), between which it is linear; 0: the whole grid
     Seconds solution_latency{0.05};  ///< from the epoch instant to the first byte of its output
 
     /// What it can send, in the order in which it leaves within an epoch; sentences among it.
@@ -228,6 +231,7 @@ struct BoardProfile {
     std::uint8_t gnss_channels_hardware = 0, gnss_channels_used = 0;
     std::uint8_t gnss_supported = 0,
                  gnss_simultaneous = 0;             ///< of MON-GNSS: bits 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo
+    double doppler_deviation_hz = 0;                ///< of what RXM-RAWX says of Dopplers, beside the loop
     bool comms_output_port = false;                 ///< MON-COMMS tells by which port it leaves
     std::size_t galileo_words = 8;                  ///< of a pair of pages in RXM-SFRBX; a ninth tells nothing
     std::map<std::uint32_t, std::uint64_t> config;  ///< factory values that differ from ConfigKey::default_value

@@ -51,12 +51,8 @@ Abilities msp_abilities(const BoardProfile&) {
 Abilities msp_v1_abilities(const BoardProfile&) { return {.dead_reckoning = false, .more = {"MSP"}}; }
 
 Abilities mavlink_abilities(const BoardProfile&) {
-    return {.heading = true,
-            .accuracies = true,
-            .weeks = true,
-            .time = true,
-            .dead_reckoning = false,
-            .more = {"MAVLink"}};
+    return {
+        .heading = true, .accuracies = true, .weeks = true, .time = true, .dead_reckoning = false, .more = {"MAVLink"}};
 }
 
 }  // namespace skyloop::firmware

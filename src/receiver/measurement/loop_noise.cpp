@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "detail/loop_noise.hpp"
 #include "receiver/measurement/tracking_jitter.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
@@ -53,12 +55,22 @@ Seconds memory_of(Hertz bandwidth) { return Seconds(bandwidth.value() > 0 ? 1 / 
 
 }  // namespace
 
-NoiseSteps noise_steps(const MeasurementParameters& parameters, Seconds dt, bool moving) {
+NoiseSteps noise_steps(const MeasurementParameters& parameters, Seconds dt) {
     const auto unit = [dt](Seconds correlation_time) { return gauss_markov_step({1, correlation_time}, dt); };
-    const StatisticalMultipath& multipath = parameters.multipath_model;
+    const Seconds window = parameters.doppler_window;
     return {unit(memory_of(parameters.code_loop.bandwidth)), unit(memory_of(parameters.phase_loop.bandwidth)),
-            unit(memory_of(parameters.frequency_loop.bandwidth)),
-            unit(moving ? multipath.moving_time : multipath.static_time), unit(parameters.scintillation_time)};
+            unit(window > Seconds(0) ? window * 0.5 : memory_of(parameters.frequency_loop.bandwidth)),
+            unit(parameters.scintillation_time)};
+}
+
+double low_share(Angle elevation) {
+    constexpr double fall = 10;  // degrees of elevation over which m1 falls to 1/e
+    return std::exp(-elevation.deg() / fall);
+}
+
+GaussMarkovStep multipath_step(const StatisticalMultipath& model, Angle elevation, Seconds dt, bool moving) {
+    const Seconds at_rest = model.static_time + model.horizon_time * low_share(elevation);
+    return gauss_markov_step({1, moving ? model.moving_time : at_rest}, dt);
 }
 
 SignalProcesses::SignalProcesses(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite,
@@ -70,11 +82,11 @@ SignalProcesses::SignalProcesses(const MeasurementParameters& parameters, std::u
       scintillation(
           parameters.scintillation.stream(seed, signal_stream_name("phase_scintillation", satellite, signal))) {}
 
-void SignalProcesses::advance(const NoiseSteps& steps, bool scintillates) {
+void SignalProcesses::advance(const NoiseSteps& steps, const GaussMarkovStep& multipath_step, bool scintillates) {
     code.advance(steps.code);
     phase.advance(steps.phase);
     frequency.advance(steps.frequency);
-    multipath.advance(steps.multipath);
+    multipath.advance(multipath_step);
     if (scintillates) scintillation.advance(steps.scintillation);
 }
 
@@ -105,19 +117,43 @@ Angle LoopDeviations::total_phase() const {
     return Angle::radians(std::sqrt(phase.rad() * phase.rad() + scintillation.rad() * scintillation.rad()));
 }
 
-LoopDeviations loop_deviations(const MeasurementParameters& parameters, const CodeLoop& code_loop, double jitter_ratio,
-                               DbHz cn0, const SignalScintillation& scintillation) {
+namespace {
+
+// Of the phase over a window, and beside it what the oscillator itself does to each of two readings.
+Hertz doppler_jitter(Angle phase, Seconds window, Hertz carrier) {
+    constexpr double oscillator_mps = 0.003;
+    const double own = oscillator_mps * carrier.value() / speed_of_light;
+    const double thermal = std::numbers::sqrt2 * phase.rad() / (2 * std::numbers::pi * window.value());
+    return Hertz(std::sqrt(thermal * thermal + own * own));
+}
+
+// Wide enough to follow what it has had time to average.
+Hertz acting_bandwidth(Hertz settled, Seconds locked) {
+    constexpr double shortest = 0.5;  // s
+    return std::max(settled, Hertz(1 / (4 * (locked.value() + shortest))));
+}
+
+}  // namespace
+
+LoopDeviations loop_deviations(const MeasurementParameters& parameters, const TrackedSignal& signal, DbHz cn0,
+                               const SignalScintillation& scintillation) {
     // Near the threshold a frequency loop is twice as noisy in power.
     const double threshold_factor = cn0 >= parameters.acquisition.phase_threshold ? 1 : 2;
     const CarrierToNoise power(cn0);
-    LoopDeviations result{code_jitter(code_loop, power) * jitter_ratio, phase_jitter(parameters.phase_loop, power),
-                          scintillation.phase, frequency_jitter(parameters.frequency_loop, power, threshold_factor)};
-    if (!(scintillation.amplitude > 0)) return result;
-    const double s4 = std::min(scintillation.amplitude, strongest_tracked_s4);
-    // The published formula has no front end: only its growth with S4 is taken.
-    result.code = result.code * (scintillating_code_jitter_chips(code_loop, power, s4) /
-                                 scintillating_code_jitter_chips(code_loop, power, 0));
-    result.phase = scintillating_phase_jitter(parameters.phase_loop, power, s4);
+    CodeLoop code_loop = signal.code_loop;
+    code_loop.bandwidth = acting_bandwidth(code_loop.bandwidth, signal.code_locked);
+    LoopDeviations result{code_jitter(code_loop, power) * signal.jitter_ratio,
+                          phase_jitter(parameters.phase_loop, power), scintillation.phase,
+                          frequency_jitter(parameters.frequency_loop, power, threshold_factor)};
+    if (scintillation.amplitude > 0) {
+        const double s4 = std::min(scintillation.amplitude, strongest_tracked_s4);
+        // The published formula has no front end: only its growth with S4 is taken.
+        result.code = result.code * (scintillating_code_jitter_chips(code_loop, power, s4) /
+                                     scintillating_code_jitter_chips(code_loop, power, 0));
+        result.phase = scintillating_phase_jitter(parameters.phase_loop, power, s4);
+    }
+    if (signal.phase_locked && parameters.doppler_window > Seconds(0))
+        result.frequency = doppler_jitter(result.total_phase(), parameters.doppler_window, signal.carrier);
     return result;
 }
 

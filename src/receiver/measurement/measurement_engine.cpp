@@ -87,10 +87,9 @@ private:
         const Seconds passed = last_ ? std::max(difference(time, *last_), Seconds(0)) : Seconds(0);
         ChannelEpoch epoch{parameters_, time, passed, arrivals.antenna_speed > slowest_motion, {}, {}, {}, start_};
         if (difference(time, started_) >= parameters_.acquisition.settled_after) epoch.knowledge = StartKind::hot;
-        if (!steps_ || steps_since_last_ != passed || steps_moving_ != epoch.moving) {
-            steps_ = noise_steps(parameters_, passed, epoch.moving);
+        if (!steps_ || steps_since_last_ != passed) {
+            steps_ = noise_steps(parameters_, passed);
             steps_since_last_ = passed;
-            steps_moving_ = epoch.moving;
         }
         epoch.steps = *steps_;
         if (clock_) {
@@ -136,7 +135,6 @@ private:
     int restarts_ = 0;
     std::optional<NoiseSteps> steps_;
     Seconds steps_since_last_;
-    bool steps_moving_ = false;
 };
 
 MeasurementEngine::MeasurementEngine(const MeasurementParameters& parameters, std::uint64_t seed)

@@ -1,6 +1,8 @@
 /// Every number of the measurement engine.
 #pragma once
 
+#include <optional>
+
 #include "base/core/random.hpp"
 #include "receiver/measurement/receiver_clock.hpp"
 #include "receiver/measurement/tracking_jitter.hpp"
@@ -16,8 +18,8 @@ struct AcquisitionParameters {
     DbHz warm_threshold{28};  ///< when time, place and almanac are; of hot starts and reacquisition too
     DbHz loss_threshold{22};  ///< below it for `loss_after`, lock is lost; at once when the signal no longer arrives
     Seconds loss_after{0.5};
-    Seconds reacquisition{1};  ///< of a signal lost within `reacquisition_memory`; at least, of one lost before
-    Seconds reacquisition_memory{60};
+    Seconds reacquisition{1};           ///< of a signal that was lost, at the longest
+    double reacquisition_growth{0.02};  ///< s of that search for each second that it was away, up to 300 s
     Seconds hot_search{0};  ///< of a hot start, and of a satellite's second signals when its first is locked
     Seconds warm_search{6};
     Seconds cold_search{12};
@@ -34,6 +36,7 @@ struct StatisticalMultipath {
     Metres floor{0.5};          ///< m0
     Metres at_horizon{1.0};     ///< m1
     Seconds static_time{120};   ///< correlation time at rest
+    Seconds horizon_time{0};    ///< what comes to it at the horizon, times exp(−e/10°)
     Seconds moving_time{5};     ///< above 1 m/s
     double phase_ratio = 0.01;  ///< of the carrier's error to the code's
 };
@@ -46,6 +49,12 @@ struct MeasurementParameters {
     ReceiverClockParameters clock;
     AcquisitionParameters acquisition;
     StatisticalMultipath multipath_model;
+    double multipath_share = 1;  ///< of it, that its correlators leave
+    Seconds doppler_window{
+        0.1};                ///< of the carrier, whose change over it is the Doppler; 0: that of the frequency loop
+    Decibels cn0_offset{0};  ///< of the reported C/N0
+    /// Of what it says of its ranges' deviation, beside the code loop; nothing: what the correlators leave of m0.
+    std::optional<Metres> range_deviation_floor{};
     Decibels cn0_resolution{1};       ///< of the reported C/N0; 0: none
     Seconds scintillation_time{0.8};  ///< correlation time of scintillating phase (MODELS.md 7.11)
     double slips_per_hour = 0;        ///< of each tracked carrier in good conditions; more come with weak signals

@@ -10,7 +10,6 @@
 namespace skyloop::inline receiver {
 namespace {
 
-constexpr double multipath_fall = 10;  // degrees of elevation over which m1 falls to 1/e
 constexpr double seconds_per_hour = 3600;
 
 double first_to_own_frequency(const ChannelInput& input) {
@@ -44,7 +43,7 @@ DbHz reported_cn0(DbHz cn0, Decibels resolution) {
 }
 
 double multipath_deviation(const StatisticalMultipath& model, Angle elevation) {
-    return model.floor.value() + model.at_horizon.value() * std::exp(-elevation.deg() / multipath_fall);
+    return model.floor.value() + model.at_horizon.value() * low_share(elevation);
 }
 
 // Not std::hypot(): these numbers are far from overflow, and it is called for every signal.
@@ -93,8 +92,10 @@ void SignalChannel::track(const ChannelInput& input, const ChannelEpoch& epoch) 
                   epoch.now);
     if (!lock_.code_locked()) return;
     // The formulas for a signal that fades want its mean.
-    deviations_ =
-        loop_deviations(epoch.parameters, code_loop_, traits_.jitter_ratio, *cn0 - DbHz(faded_.value()), scintillation);
+    deviations_ = loop_deviations(epoch.parameters,
+                                  {code_loop_, traits_.jitter_ratio, input.signal.carrier, lock_.phase_locked(),
+                                   lock_.code_locked_for(epoch.now)},
+                                  *cn0 - DbHz(faded_.value()), scintillation);
     draw_errors(input, epoch);
     follow_cycles(input, epoch, had_phase);
 }
@@ -110,7 +111,8 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
     if (!new_) {
         const Seconds passed = difference(epoch.now, processed_);
         processes_.advance(
-            passed == epoch.since_last ? epoch.steps : noise_steps(epoch.parameters, passed, epoch.moving),
+            passed == epoch.since_last ? epoch.steps : noise_steps(epoch.parameters, passed),
+            multipath_step(epoch.parameters.multipath_model, input.arrival.direction.elevation, passed, epoch.moving),
             deviations_.scintillation.rad() > 0);
     }
     new_ = false;
@@ -132,7 +134,8 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
         return;
     }
     // Without the line of sight the excess path is the error, and the scene has told it.
-    const double multipath = input.arrival.line_of_sight ? parameters.multipath.factor() : 0;
+    const double multipath =
+        input.arrival.line_of_sight ? parameters.multipath.factor() * parameters.multipath_share : 0;
     terms_.multipath = Metres(multipath * processes_.multipath.value() *
                               multipath_deviation(parameters.multipath_model, input.arrival.direction.elevation));
     terms_.phase_multipath = parameters.multipath_model.phase_ratio * terms_.multipath;
@@ -208,16 +211,18 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
                              arrival.excess_rate.value() + arrival.false_range_rate.value() -
                              arrival.false_iono_rate.value() * ratio * ratio + epoch.clock_drift.value() -
                              speed_of_light * arrival.clock_drift;
-    const double floor = parameters.multipath_model.floor.value();
+    const Metres floor =
+        parameters.range_deviation_floor.value_or(parameters.multipath_model.floor * parameters.multipath_share);
 
     Observation result;
     result.satellite = satellite_;
     result.signal = signal_;
     result.carrier = input.signal.carrier;
-    result.cn0 = reported_cn0(*arriving_cn0(input, echoes_.strength + faded_), parameters.cn0_resolution);
+    result.cn0 = reported_cn0(*arriving_cn0(input, echoes_.strength + faded_ + parameters.cn0_offset),
+                              parameters.cn0_resolution);
     result.pseudorange = Metres(path + speed_of_light * input.signal.group_delay.value() + iono +
                                 terms_.multipath.value() + terms_.code_noise.value());
-    result.pseudorange_deviation = Metres(root_of_squares(deviations_.code.value(), floor));
+    result.pseudorange_deviation = Metres(root_of_squares(deviations_.code.value(), floor.value()));
     result.doppler = Hertz(-path_rate / wavelength + terms_.doppler_noise.value());
     result.doppler_deviation = deviations_.frequency;
     result.half_cycle_resolved = lock_.half_cycle_resolved();

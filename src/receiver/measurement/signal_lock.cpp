@@ -44,18 +44,12 @@ void SignalLock::forget() {
 }
 
 void SignalLock::search(const AcquisitionParameters& parameters, const SignalSight& sight, GpsTime now) {
-    const bool remembered = lost_at_ && !passed(*lost_at_, now, parameters.reacquisition_memory);
-    const StartKind knowledge = remembered ? StartKind::hot : sight.knowledge;
+    const StartKind knowledge = lost_at_ ? StartKind::hot : sight.knowledge;
     if (!sight.searchable || !(*sight.cn0 >= search_threshold(parameters, knowledge))) {
         found_at_.reset();
         return;
     }
-    if (!found_at_) {
-        Seconds takes = remembered ? parameters.reacquisition : search_time(parameters, sight);
-        // What has been lost for longer is not found sooner.
-        if (lost_at_) takes = std::max(takes, parameters.reacquisition);
-        found_at_ = advanced(now, takes);
-    }
+    if (!found_at_) found_at_ = advanced(now, search_time(parameters, knowledge, *sight.cn0, now));
     if (now < *found_at_) return;
     code_since_ = now;
     found_at_.reset();
@@ -88,14 +82,19 @@ void SignalLock::lose(GpsTime now) {
     lost_at_ = now;
 }
 
-Seconds SignalLock::search_time(const AcquisitionParameters& parameters, const SignalSight& sight) {
+Seconds SignalLock::search_time(const AcquisitionParameters& parameters, StartKind knowledge, DbHz cn0, GpsTime now) {
+    constexpr double longest_away = 300;  // s; from then on nothing more is forgotten
     const double chance = searches_.uniform();
-    const double threshold = search_threshold(parameters, sight.knowledge).value();
+    const double threshold = search_threshold(parameters, knowledge).value();
     const double weakness = std::clamp(
-        (strongest_signal - sight.cn0->value()) / std::max(strongest_signal - threshold, certain_difference), 0.0, 1.0);
+        (strongest_signal - cn0.value()) / std::max(strongest_signal - threshold, certain_difference), 0.0, 1.0);
     const double part =
         shortest_search + (1 - shortest_search) * (share_of_chance * chance + (1 - share_of_chance) * weakness);
-    switch (sight.knowledge) {
+    if (lost_at_) {
+        const double away = std::min(difference(now, *lost_at_).value(), longest_away);
+        return (parameters.reacquisition + Seconds(parameters.reacquisition_growth * away)) * part;
+    }
+    switch (knowledge) {
         case StartKind::cold:
             return parameters.cold_search * part;
         case StartKind::warm:

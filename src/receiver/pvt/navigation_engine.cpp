@@ -9,6 +9,7 @@
 #include "receiver/pvt/integrity.hpp"
 #include "receiver/pvt/observation_equations.hpp"
 #include "receiver/pvt/position_filter.hpp"
+#include "receiver/pvt/satellite_choice.hpp"
 #include "receiver/pvt/satellite_report.hpp"
 #include "receiver/pvt/single_point.hpp"
 #include "world/gnss/constants.hpp"
@@ -16,8 +17,6 @@
 namespace skyloop::inline receiver {
 namespace {
 
-// Of a range rate, beside what the loop itself knows; ours.
-constexpr double range_rate_floor = 0.02;    // m/s
 constexpr double coasting_acceleration = 1;  // m/s², by which a lost fix may have left its course
 
 GpsTime whole_millisecond(GpsTime time) { return std::chrono::round<std::chrono::milliseconds>(time); }
@@ -28,8 +27,7 @@ struct EpochSolution {
     std::vector<const Observation*> primaries;  // the observation behind each equation
     std::optional<SinglePoint> point;
     std::optional<SinglePointVelocity> velocity;
-    bool consistent = true;
-    bool time_only = false;
+    bool consistent = true, time_only = false;
 };
 
 }  // namespace
@@ -49,6 +47,7 @@ public:
           smoother_(parameters.filter.code_smoothing),
           filter_(parameters.filter),
           report_(*knowledge.broadcast, received_),
+          choice_(parameters.use),
           position_(knowledge.last_place) {}
 
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
@@ -69,7 +68,7 @@ private:
     void add_equations(const Observations& observations, const ReceiverSettings& settings, EpochSolution& epoch);
     [[nodiscard]] std::optional<HeldHeight> held_height(const ReceiverSettings& settings) const;
     void solve_position(const ReceiverSettings& settings, EpochSolution& epoch);
-    static void solve_doppler(EpochSolution& epoch);
+    void solve_doppler(EpochSolution& epoch) const;
     [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const;
     void fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix);
     void fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings, Fix& fix);
@@ -78,6 +77,10 @@ private:
     void begin_regime(CorrectionState state);
     Observations prepared(const Observations& observations, const ReceiverSettings& settings);
     [[nodiscard]] DifferentialKind differential_kind() const;
+    [[nodiscard]] Metres told_undulation(const Geodetic& at) const {
+        const Geoid* geoid = knowledge_.geoid;
+        return geoid ? geoid->undulation(at.latitude, at.longitude, knowledge_.geoid_step_deg) : Metres(0);
+    }
 
     NavigationParameters parameters_;
     NavigationKnowledge knowledge_;
@@ -89,6 +92,7 @@ private:
     CodeSmoother smoother_;
     PositionFilter filter_;
     SatelliteReport report_;
+    SatelliteChoice choice_;
 
     std::optional<int> restarts_;
     GpsTime time_;                           // true, as well as the receiver can tell
@@ -111,6 +115,7 @@ void NavigationEngine::State::begin(const ReceiverSettings& settings, GpsTime ti
     filter_.reset();
     smoother_.reset();
     report_.reset();
+    choice_.reset();
     clock_known_at_.reset();
     if (settings.start != StartKind::cold) return;
     position_.reset();
@@ -130,6 +135,7 @@ GpsTime NavigationEngine::State::presumed_time(const Observations& observations)
 void NavigationEngine::State::add_equations(const Observations& observations, const ReceiverSettings& settings,
                                             EpochSolution& epoch) {
     const std::vector<Observation>& all = observations.signals;
+    choice_.begin(observations);
     for (std::size_t i = 0; i < all.size();) {
         // The signals of one satellite: its first one, or what there is, and the others.
         const Observation* first = nullptr;
@@ -144,8 +150,9 @@ void NavigationEngine::State::add_equations(const Observations& observations, co
         if (first == nullptr || (id.constellation == Constellation::sbas && !settings.sbas_ranging)) continue;
         const bool combined = parameters_.corrections.ionosphere_free && corrected_ == CorrectionState::none;
         if (!combined) others = {};
-        const auto made = range_equation(transmitters(), *first, others, observations.receive_time);
+        auto made = range_equation(transmitters(), *first, others, observations.receive_time);
         if (!made) continue;
+        made->selected = choice_.takes(*first);
         epoch.equations.push_back(*made);
         epoch.primaries.push_back(first);
     }
@@ -184,7 +191,7 @@ void NavigationEngine::State::solve_position(const ReceiverSettings& settings, E
     epoch.consistent = checked->consistent;
 }
 
-void NavigationEngine::State::solve_doppler(EpochSolution& epoch) {
+void NavigationEngine::State::solve_doppler(EpochSolution& epoch) const {
     if (!epoch.point || epoch.time_only) return;
     std::vector<DopplerEquation> equations;
     equations.reserve(epoch.equations.size());
@@ -193,7 +200,8 @@ void NavigationEngine::State::solve_doppler(EpochSolution& epoch) {
         const RangeOutcome& r = epoch.point->ranges[i];
         if (!r.used || !o.doppler) continue;
         const double wavelength = speed_of_light / o.carrier.value();
-        const double noise = std::hypot(range_rate_floor, wavelength * o.doppler_deviation.value());
+        const double noise =
+            std::hypot(parameters_.weights.range_rate.value(), wavelength * o.doppler_deviation.value());
         equations.push_back({r.line, r.satellite, r.satellite_velocity, epoch.equations[i].transmitter.clock_drift,
                              MetresPerSecond(-wavelength * o.doppler->value()), MetresPerSecond(noise)});
     }
@@ -233,10 +241,8 @@ bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const 
     if (parameters_.filter.kind == FilterKind::none) return true;
     const MotionLimits limits = motion_limits(settings);
     const Geodetic place = to_geodetic(filtered.position);
-    const Metres undulation =
-        knowledge_.geoid ? knowledge_.geoid->undulation(place.latitude, place.longitude) : Metres(0);
     const Eigen::Vector3d v = LocalFrame(place).to_enu(filtered.velocity).vector();
-    return above_sea_level(place.height, undulation).above_sea_level <= limits.height &&
+    return above_sea_level(place.height, told_undulation(place)).above_sea_level <= limits.height &&
            std::hypot(v.x(), v.y()) <= limits.horizontal_speed.value() &&
            std::abs(v.z()) <= limits.vertical_speed.value();
 }
@@ -244,8 +250,7 @@ bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const 
 void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings,
                                           Fix& fix) {
     fix.position = to_geodetic(filtered.position);
-    if (knowledge_.geoid)
-        fix.geoid_undulation = knowledge_.geoid->undulation(fix.position.latitude, fix.position.longitude);
+    fix.geoid_undulation = told_undulation(fix.position);
     const Eigen::Vector3d v = LocalFrame(fix.position).to_enu(filtered.velocity).vector();
     fix.velocity = {v.y(), v.x(), -v.z()};
     fix.speed = MetresPerSecond(std::hypot(v.x(), v.y()));
@@ -362,6 +367,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
     Fix fix;
     fix.time = time_;
     fix.leap_seconds = knowledge_.leap_seconds.offset(time_);
+    choice_.solved(epoch.point && !epoch.point->height_held);
     if (epoch.point) {
         fill_solved(epoch, settings, fix);
         clock_known_at_ = observations.receive_time;
@@ -374,8 +380,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
     }
     // What is carried on is carried on from the last solution.
     if (epoch.point || fix.type == FixType::none) last_ = fix;
-    std::optional<Position<Ecef>> place = position_;
-    if (epoch.time_only) place = to_ecef(*parameters_.fixed_position);
+    const auto place = epoch.time_only ? std::optional(to_ecef(*parameters_.fixed_position)) : position_;
     fix.satellites =
         report_.list({observations, time_, place, epoch.equations, epoch.point ? &epoch.point->ranges : nullptr});
     return fix;

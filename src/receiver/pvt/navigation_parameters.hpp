@@ -39,6 +39,17 @@ struct WeightParameters {
     Metres at_zenith{0.9};  ///< s1
     Metres beidou_orbits{0.6};
     Metres glonass_orbits{1.5};
+    MetresPerSecond range_rate{0.02};  ///< of a range rate, beside what the loop itself knows
+};
+
+/// Which of the tracked satellites are used: those that are as strong as `from`, and not weaker by more than `within`
+/// than the fourth strongest; once used, until they are weaker than that by `hysteresis`. While there is a fix a new
+/// one waits for `after`.
+struct UseParameters {
+    DbHz from{0};
+    Decibels within{100};
+    Decibels hysteresis{3};
+    Seconds after{0};
 };
 
 /// The receiver's filter over the solutions of single epochs.
@@ -48,10 +59,12 @@ enum class FilterKind {
 };
 struct FilterParameters {
     FilterKind kind = FilterKind::smoothed;
-    Seconds position_memory{15};    ///< how long single positions are remembered at rest
-    Seconds code_smoothing{0};      ///< of the code by the carrier (Hatch), before the solution; 0: none
-    Seconds coasting{2};            ///< how long a lost fix is carried on, as dead reckoning
-    Metres static_hold_radius{10};  ///< out of which a held position is let go
+    Seconds position_memory{15};      ///< how long single positions are remembered at rest
+    Seconds code_smoothing{0};        ///< of the code by the carrier (Hatch), before the solution; 0: none
+    Seconds velocity_memory{0};       ///< of the velocity told, in motion
+    Seconds velocity_rest_memory{0};  ///< the same at rest
+    Seconds coasting{2};              ///< how long a lost fix is carried on, as dead reckoning
+    Metres static_hold_radius{10};    ///< out of which a held position is let go
 };
 
 /// Who is believed.
@@ -94,6 +107,7 @@ struct DataParameters {
 struct NavigationParameters {
     CorrectionParameters corrections;
     WeightParameters weights;
+    UseParameters use;
     FilterParameters filter;
     IntegrityParameters integrity;
     AccuracyParameters accuracy;

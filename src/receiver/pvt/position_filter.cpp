@@ -50,6 +50,23 @@ MotionLimits motion_limits(const ReceiverSettings& settings) {
     return settings.dynamic_limits ? motion_limits(settings.dynamic_model, settings.airborne_ceiling) : MotionLimits{};
 }
 
+Velocity<Ecef> VelocityFilter::update(const FilterParameters& parameters, GpsTime time, const Velocity<Ecef>& measured,
+                                      MetresPerSecond deviation, DynamicModel model) {
+    const double dt = time_ ? difference(time, *time_).value() : 0;
+    time_ = time;
+    if (!(dt > 0) || dt > longest_gap_s) {
+        velocity_ = measured.vector();
+        return measured;
+    }
+    const Vector3d step = measured.vector() - velocity_;
+    const double noise = quiet_deviations * deviation.value();
+    const bool rests = step.norm() < noise && velocity_.norm() < noise;
+    const double memory =
+        (rests ? parameters.velocity_rest_memory : parameters.velocity_memory).value() * memory_factor(model);
+    velocity_ += (memory > 0 ? 1 - std::exp(-dt / memory) : 1) * step;
+    return Velocity<Ecef>(velocity_);
+}
+
 void PositionFilter::reset() { *this = PositionFilter(parameters_); }
 
 void PositionFilter::start(const PositionInput& input) {
@@ -112,7 +129,13 @@ bool PositionFilter::holds(const PositionInput& input, const ReceiverSettings& s
     return held_.has_value();
 }
 
-FilteredPosition PositionFilter::update(const PositionInput& input, const ReceiverSettings& settings) {
+FilteredPosition PositionFilter::update(const PositionInput& measured, const ReceiverSettings& settings) {
+    PositionInput input = measured;
+    if (measured.velocity)
+        input.velocity = told_.update(parameters_, measured.time, *measured.velocity, measured.velocity_deviation,
+                                      settings.dynamic_model);
+    else
+        told_.reset();
     const double dt = time_ ? difference(input.time, *time_).value() : 0;
     const bool follows =
         time_ && !interrupted_ && dt > 0 && dt < longest_gap_s && input.velocity && velocity_count_ > 0;

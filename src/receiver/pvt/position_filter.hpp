@@ -32,6 +32,21 @@ struct FilteredPosition {
     Seconds coasted{0};  ///< since the last solution
 };
 
+/// The velocity that is told: an average over `velocity_memory` of what the Dopplers say, and at rest over
+/// `velocity_rest_memory`; a step beyond the noise is followed as in motion.
+class VelocityFilter {
+public:
+    /// @param deviation 1 σ, three-dimensional @param model stationary and portable ones remember longer, airborne ones
+    /// less
+    Velocity<Ecef> update(const FilterParameters& parameters, GpsTime time, const Velocity<Ecef>& measured,
+                          MetresPerSecond deviation, DynamicModel model);
+    void reset() { time_.reset(); }
+
+private:
+    std::optional<GpsTime> time_;
+    Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+};
+
 /// A constant-velocity filter with the gain of its steady state: the position is carried along by the Doppler velocity
 /// and drawn to the solutions of single epochs with a memory of position_memory; while it is young it averages all it
 /// has had. The way between two epochs is the integral of the cubic through the last four velocities; what that leaves
@@ -42,7 +57,7 @@ class PositionFilter {
 public:
     explicit PositionFilter(const FilterParameters& parameters) : parameters_(parameters) {}
     /// Takes a solution in; times ascend.
-    FilteredPosition update(const PositionInput& input, const ReceiverSettings& settings);
+    FilteredPosition update(const PositionInput& measured, const ReceiverSettings& settings);
     /// The position carried on without a solution; nothing once that has lasted longer than `coasting`.
     [[nodiscard]] std::optional<FilteredPosition> coast(GpsTime time);
     void reset();
@@ -64,6 +79,7 @@ private:
     bool settled_ = false;                         // half of the memory has been filled
     bool interrupted_ = false;
     std::optional<Eigen::Vector3d> held_;
+    VelocityFilter told_;
 };
 
 }  // namespace skyloop::inline receiver

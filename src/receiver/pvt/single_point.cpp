@@ -124,7 +124,7 @@ public:
 
 private:
     static bool believed(const RangeEquation& e) {
-        return !e.excluded && e.transmitter.healthy && std::isfinite(e.pseudorange.value());
+        return e.selected && !e.excluded && e.transmitter.healthy && std::isfinite(e.pseudorange.value());
     }
     void look();
     [[nodiscard]] ClockMeans means() const;

@@ -26,6 +26,7 @@ struct RangeEquation {
     Hertz carrier;     ///< 0: the ionosphere is already out
     Metres deviation;  ///< 1 σ of the loops
     bool excluded = false;
+    bool selected = true;  ///< the receiver uses this satellite at all
 };
 
 /// A height that is known from elsewhere.

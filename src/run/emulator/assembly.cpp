@@ -31,7 +31,8 @@ ErrorModelSettings error_model_settings(const Scenario& scenario, const Simulati
     settings.sensor = {{scenario.sky.elevation_mask.value_or(SelectionParameters().elevation_mask)},
                        receiver_seed(scenario.run.seed, setup.receiver),
                        setup.geoid,
-                       LeapSeconds::announced()};
+                       LeapSeconds::announced(),
+                       setup.geoid_step_deg};
     settings.baseline = model.baseline;
     settings.constant_sigma = model.constant_sigma;
     settings.satellite_count = model.satellite_count;

@@ -123,6 +123,8 @@ struct SimulationSetup {
     const Embedding* embedding = nullptr;                ///< null: none
     double epochs_per_second = 1;                        ///< of the receiver, at start
     Seconds warm_start = firmware::Timing().warm_start;  ///< of the receiver's board, to its first fix
+    std::string board_keys{};                            ///< BoardProfile::modern
+    double geoid_step_deg = 0;                           ///< the same
     /// Of the modern model; receivers of one run share it.
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
 };

@@ -83,12 +83,13 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
 
 MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup,
                                      const std::optional<Geodetic>& last_place) {
-    ModernSettings settings = effective(scenario.model.modern);
+    ModernSettings settings = effective(with_board(scenario.model.modern, setup.board_keys));
     // Satellites broadcast an ionosphere even where the navigation data has lost it or there is none.
     settings.navigation.corrections.default_ionosphere = true;
     settings.navigation.ephemeris_collection =
         settings.ephemeris_collection.value_or(std::max(setup.warm_start - warm_search, Seconds(0)));
     NavigationKnowledge knowledge{setup.navigation.get(), setup.geoid, LeapSeconds::announced()};
+    knowledge.geoid_step_deg = setup.geoid_step_deg;
     if (last_place) knowledge.last_place = to_ecef(*last_place);
     return {MeasurementEngine(settings.measurement, receiver_seed(scenario.run.seed, setup.receiver)),
             NavigationEngine(settings.navigation, knowledge)};

@@ -181,9 +181,17 @@ Result<Link> open_wire(const WireRequest& wire, const firmware::Receiver& receiv
 
 SimulationSetup simulation_setup(const SharedParts& shared, std::size_t index, const firmware::Receiver& receiver) {
     const double rate = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
-    return {shared.navigation,     shared.geoid, shared.start,
-            shared.data,           index,        shared.scene,
-            shared.mode.embedding, rate,         receiver.board().timing.warm_start,
+    return {shared.navigation,
+            shared.geoid,
+            shared.start,
+            shared.data,
+            index,
+            shared.scene,
+            shared.mode.embedding,
+            rate,
+            receiver.board().timing.warm_start,
+            receiver.board().modern,
+            receiver.board().geoid_step_deg,
             shared.gas_losses};
 }
 
@@ -191,8 +199,9 @@ void remember_place(const SharedParts& shared, std::size_t index, const Simulati
                     firmware::Receiver& receiver) {
     const auto place = place_before_start(shared.scenario, index, simulation.truth_at(shared.start));
     if (!place) return;
+    const double step = receiver.board().geoid_step_deg;
     const Metres undulation =
-        shared.geoid != nullptr ? shared.geoid->undulation(place->latitude, place->longitude) : Metres(0);
+        shared.geoid != nullptr ? shared.geoid->undulation(place->latitude, place->longitude, step) : Metres(0);
     receiver.remember(*place, undulation);
 }
 

@@ -159,7 +159,8 @@ std::string why_not_withheld(const UsedReceiver& receiver, std::string_view name
 std::string why_no_item(const UsedReceiver& receiver, std::string_view name) {
     const firmware::ConfigKey* key = firmware::find_config_key(upper_case(name));
     if (key == nullptr) return {};
-    if (!can<&firmware::Abilities::ubx>(receiver) || receiver.board.quirks.value_config != firmware::ValueConfigSupport::full)
+    if (!can<&firmware::Abilities::ubx>(receiver) ||
+        receiver.board.quirks.value_config != firmware::ValueConfigSupport::full)
         return "takes no CFG-VALSET";
     return firmware::factory_config(receiver.board).contains(key->id)
                ? std::string()

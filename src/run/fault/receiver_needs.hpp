@@ -61,7 +61,8 @@ inline constexpr ReceiverNeed week_report{"has no message with week numbers", ca
 inline constexpr ReceiverNeed correction_input{"takes no corrections", can<&firmware::Abilities::corrections>};
 inline constexpr ReceiverNeed rtk_solution{"has no RTK", solves_rtk};
 inline constexpr ReceiverNeed dead_reckoning_report{"never reports dead reckoning", reports_dead_reckoning};
-inline constexpr ReceiverNeed time_mode{"has no CFG-TMODE for a fix of time only", can<&firmware::Abilities::time_mode>};
+inline constexpr ReceiverNeed time_mode{"has no CFG-TMODE for a fix of time only",
+                                        can<&firmware::Abilities::time_mode>};
 inline constexpr ReceiverNeed start_texts{"sends no texts when it starts", has_texts_at_start};
 inline constexpr ReceiverNeed wired_uart1{"has nothing at its UART1", has_wired_uart1};
 

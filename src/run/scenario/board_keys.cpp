@@ -183,6 +183,7 @@ void read_board_navigation(TableReader& navigation, BoardProfile& board) {
     navigation.degrees("elevation_mask_deg", board.elevation_mask, {0, 90});
     board.dynamic_limits = board.maker == MakerKind::ublox;
     navigation.boolean("dynamic_limits", board.dynamic_limits);
+    navigation.number("geoid_step_deg", board.geoid_step_deg, {0, 45});
     read_export_limits(navigation, board.export_limits);
     navigation.quantity("solution_latency_s", board.solution_latency, {0, 2});
 }
@@ -295,6 +296,11 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     top.table("uart", [&](TableReader& t) { read_board_uart(t, board); });
     top.table("usb", [&](TableReader& t) { read_board_usb(t, board); });
     top.table("navigation", [&](TableReader& t) { read_board_navigation(t, board); });
+    top.table("modern", [&](TableReader& t) {
+        ModernSettings checked = ModernSettings::of(ModernPreset::consumer);
+        read_modern_receiver_keys(t, checked);
+        board.modern = t.toml_text();
+    });
     top.table("nmea", [&](TableReader& t) { read_board_nmea(t, board); });
     top.table("ubx", [&](TableReader& t) { read_board_ubx(t, board); });
     top.table("sbf", [&](TableReader& t) { read_board_sbf(t, board); });

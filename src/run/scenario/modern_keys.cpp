@@ -62,6 +62,14 @@ void read_tracking(TableReader& table, MeasurementParameters& p) {
     p.code_loop.integration = p.phase_loop.integration = p.frequency_loop.integration = integration;
     table.quantity("phase_bandwidth_hz", p.phase_loop.bandwidth, {0.01, 1000}, "of the phase loop");
     table.quantity("frequency_bandwidth_hz", p.frequency_loop.bandwidth, {0.01, 1000}, "of the frequency loop");
+    table.quantity(
+        "doppler_window_s", p.doppler_window, {0, 10},
+        {"of the carrier, whose change over it is the Doppler; 0: that of the frequency loop", "0.1; phone 0.15"});
+    table.number("multipath_share", p.multipath_share, {0, 10},
+                 "of the echoes' errors where there is no scene, that the correlators leave");
+    table.quantity("range_deviation_floor_m", p.range_deviation_floor, {0, 100},
+                   {"of what the receiver says of its ranges, beside the code loop", "multipath.floor_m"});
+    table.quantity("cn0_offset_db", p.cn0_offset, {-30, 30}, "of the reported C/N0");
     table.quantity("cn0_resolution_db", p.cn0_resolution, {0, 10}, {"of the reported C/N0; 0: none", "1; survey 0.25"});
     table.number("slips_per_hour", p.slips_per_hour, {0, 1e6}, {"of each carrier in good conditions", "0; phone 60"});
 }
@@ -74,8 +82,9 @@ void read_acquisition(TableReader& table, AcquisitionParameters& p) {
     table.quantity("phase_threshold_dbhz", p.phase_threshold, {-100, 100},
                    "C/N0 from which the carrier's phase is locked");
     table.quantity("loss_after_s", p.loss_after, {0, 3600}, "below the threshold for so long, lock is lost");
-    table.quantity("reacquisition_s", p.reacquisition, {0, 3600},
-                   "of a signal lost less than a minute ago; later it takes no less");
+    table.quantity("reacquisition_s", p.reacquisition, {0, 3600}, "longest search of a signal that was lost");
+    table.number("reacquisition_growth", p.reacquisition_growth, {0, 10},
+                 "s that this search takes longer for each second that the signal was away, up to 300 s");
     table.quantity("hot_search_s", p.hot_search, {0, 3600}, "longest search of a hot start");
     table.quantity("warm_search_s", p.warm_search, {0, 3600}, "longest search of a warm start");
     table.quantity("cold_search_s", p.cold_search, {0, 3600}, "longest search of a cold start");
@@ -84,10 +93,12 @@ void read_acquisition(TableReader& table, AcquisitionParameters& p) {
 }
 
 void read_multipath(TableReader& table, StatisticalMultipath& p) {
-    table.quantity("floor_m", p.floor, {0, 1000}, {"σ of the code high in the sky", "0.5; survey 0.25, phone 3"});
+    table.quantity("floor_m", p.floor, {0, 1000}, {"σ of the code high in the sky", "0.68; survey 0.28, phone 7"});
     table.quantity("at_horizon_m", p.at_horizon, {0, 1000},
-                   {"σ of the code that comes to it at the horizon", "1; survey 0.5, phone 4"});
-    table.quantity("static_time_s", p.static_time, {0, 1e6}, {"correlation time at rest", "120; survey and phone 30"});
+                   {"σ of the code that comes to it at the horizon", "7.5; survey 0.95, phone 4"});
+    table.quantity("static_time_s", p.static_time, {0, 1e6}, {"correlation time at rest", "15; survey 21, phone 0.3"});
+    table.quantity("horizon_time_s", p.horizon_time, {0, 1e6},
+                   {"what comes to it at the horizon, times exp(−elevation/10°)", "400; survey and phone 0"});
     table.quantity("moving_time_s", p.moving_time, {0, 1e6}, "correlation time above 1 m/s");
 }
 
@@ -96,6 +107,9 @@ void read_filter(TableReader& table, FilterParameters& p) {
                {"none: every epoch stands alone", "smoothed; survey none"});
     table.quantity("position_memory_s", p.position_memory, {0.01, 1e5},
                    "how long the filter remembers single positions at rest");
+    table.quantity("velocity_memory_s", p.velocity_memory, {0, 100}, "of the velocity told, in motion; 0: none");
+    table.quantity("velocity_rest_memory_s", p.velocity_rest_memory, {0, 1e5},
+                   {"of the velocity told, at rest; 0: none", "0; phone 5"});
     table.quantity("code_smoothing_s", p.code_smoothing, {0, 1e5},
                    "of the code by the carrier, before the solution; 0: none");
     table.quantity("coasting_s", p.coasting, {0, 3600}, "how long a lost fix is carried on, as dead reckoning");
@@ -122,24 +136,38 @@ void read_corrections(TableReader& table, ModernSettings& settings) {
         settings.ionosphere_free_told_at = table.told_at("ionosphere_free");
 }
 
+void read_use(TableReader& table, UseParameters& p) {
+    table.quantity("use_from_dbhz", p.from, {0, 100},
+                   {"C/N0 from which a satellite is used", "25; survey and phone 0"});
+    table.quantity("use_within_db", p.within, {0, 100},
+                   {"and by how much it may be weaker than the fourth strongest", "100; phone 12"});
+    table.quantity("use_hysteresis_db", p.hysteresis, {0, 100},
+                   "by how much weaker it may become before it is no longer used");
+    table.quantity("use_after_s", p.after, {0, 3600}, "of tracking, until it is used where there is a fix");
+}
+
 void read_solution(TableReader& table, ModernSettings& settings) {
     read_corrections(table, settings);
     NavigationParameters& p = settings.navigation;
     table.quantity("weight_floor_m", p.weights.floor, {0.001, 1000},
                    {"s0 of the variance s0² + s1²/sin² e", "0.42; survey 0.36, phone 3"});
     table.quantity("weight_at_zenith_m", p.weights.at_zenith, {0, 1000},
-                   {"s1 of the variance s0² + s1²/sin² e", "0.42; survey 0.36, phone 3"});
+                   {"s1 of the variance s0² + s1²/sin² e", "0.7; survey 0.36, phone 3"});
     table.quantity("weight_beidou_orbits_m", p.weights.beidou_orbits, {0, 1000},
                    "σ that the receiver adds for orbits and clocks of BeiDou");
     table.quantity("weight_glonass_orbits_m", p.weights.glonass_orbits, {0, 1000},
                    "σ that the receiver adds for orbits and clocks of GLONASS");
+    table.quantity("weight_range_rate_mps", p.weights.range_rate, {0.0001, 100},
+                   "σ of a range rate beside what the loop knows");
+    read_use(table, p.use);
     read_filter(table, p.filter);
     table.boolean("raim", p.integrity.enabled, "the residuals are tested");
     table.number("false_alarm", p.integrity.false_alarm, {1e-12, 0.5},
                  "probability that the test finds a fault where there is none");
     table.integer("most_exclusions", p.integrity.most_exclusions, {0, 20},
                   "how many satellites the test may throw out");
-    table.number("position_accuracy_scale", p.accuracy.position_scale, {0, 100}, "of the reported accuracy");
+    table.number("position_accuracy_scale", p.accuracy.position_scale, {0, 100},
+                 {"of the reported accuracy", "1; phone 0.45"});
     table.number("velocity_accuracy_scale", p.accuracy.velocity_scale, {0, 100}, "of the reported accuracy");
     table.number(
         "accuracy_ionosphere_share", p.accuracy.ionosphere_share, {0, 10},
@@ -174,6 +202,15 @@ void forget_acting_residual(ModernSettings& settings) {
 
 }  // namespace
 
+void read_modern_receiver_keys(TableReader& modern, ModernSettings& settings) {
+    modern.table("clock", "the receiver's oscillator", [&](TableReader& t) { read_clock(t, settings); });
+    modern.table("tracking", "the receiver's loops", [&](TableReader& t) { read_tracking(t, settings.measurement); });
+    modern.table("acquisition", "search, lock and loss",
+                 [&](TableReader& t) { read_acquisition(t, settings.measurement.acquisition); });
+    modern.table("solution", "what the receiver makes of its measurements",
+                 [&](TableReader& t) { read_solution(t, settings); });
+}
+
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder) {
     const auto preset =
         modern.choice("preset", modern_preset_names,
@@ -189,16 +226,37 @@ void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::
     settings.errors = errors;
     read_terms(modern, settings);
     read_modern_propagation_keys(modern, settings, folder);
-    modern.table("clock", "the receiver's oscillator", [&](TableReader& t) { read_clock(t, settings); });
-    modern.table("tracking", "the receiver's loops", [&](TableReader& t) { read_tracking(t, settings.measurement); });
-    modern.table("acquisition", "search, lock and loss",
-                 [&](TableReader& t) { read_acquisition(t, settings.measurement.acquisition); });
     modern.table("multipath", "echoes where there is no scene: σ = floor + horizon · exp(−elevation/10°)",
                  [&](TableReader& t) { read_multipath(t, settings.measurement.multipath_model); });
-    modern.table("solution", "what the receiver makes of its measurements",
-                 [&](TableReader& t) { read_solution(t, settings); });
+    read_modern_receiver_keys(modern, settings);
+    settings.given = modern.toml_text();
     settings.idle_keys = modern.idle_keys();
     forget_acting_residual(settings);
+}
+
+ModernSettings with_board(const ModernSettings& settings, const std::string& board_keys) {
+    if (board_keys.empty()) return settings;
+    ModernSettings own = ModernSettings::of(settings.preset, settings.surroundings);
+    // Both texts have been read before, and hold no mistakes.
+    static_cast<void>(read_toml(board_keys, "board", [&](TableReader& t) { read_modern_receiver_keys(t, own); }));
+    static_cast<void>(read_toml(settings.given, "scenario", [&](TableReader& t) {
+        read_modern_receiver_keys(t, own);
+        for (const std::string& other : t.keys())
+            t.has_been_read(other);
+    }));
+    own.measurement.multipath_model = settings.measurement.multipath_model;
+    ModernSettings result = settings;
+    result.measurement = own.measurement;
+    result.navigation = own.navigation;
+    result.ionosphere_correction = own.ionosphere_correction;
+    result.troposphere_correction = own.troposphere_correction;
+    result.ephemeris_collection = own.ephemeris_collection;
+    // The terms are the scenario's alone.
+    ModernSettings terms = settings;
+    const auto from = error_terms(terms), to = error_terms(result);
+    for (std::size_t i = 0; i < to.size(); ++i)
+        *to[i].term = *from[i].term;
+    return result;
 }
 
 }  // namespace skyloop::inline run

@@ -142,8 +142,8 @@ void read_antenna(TableReader& table, ModernSettings& settings, const std::files
     Decibels peak = p.antenna.peak(), drop = p.antenna.drop();
     double exponent = p.antenna.exponent();
     table.quantity("antenna_peak_dbic", peak, {-100, 100},
-                   {"gain = peak − drop (1 − sin e)^exponent", "3.4; phone −4"});
-    table.quantity("antenna_drop_db", drop, {0, 100}, {"from the zenith to the horizon", "16.5; phone 9"});
+                   {"gain = peak − drop (1 − sin e)^exponent", "3.4; phone −9.5"});
+    table.quantity("antenna_drop_db", drop, {0, 100}, {"from the zenith to the horizon", "19.5; survey 16.5, phone 9"});
     table.number("antenna_exponent", exponent, {0.1, 10}, {"the higher, the later the gain falls", "1.3; phone 1"});
     p.antenna = AntennaPattern(peak, drop, exponent);
     read_pattern(table, "antenna_table", {"CSV file [azimuth_deg,]elevation_deg,gain_dbic in place of these", "none"},
@@ -183,7 +183,9 @@ void read_link(TableReader& table, ModernSettings& settings, const std::filesyst
                p.man_made, "of the place, ITU-R P.372, extrapolated to L1");
     table.quantity("satellite_spread_db", p.satellite_spread, {0, 20}, "σ between satellites, constant of each");
     table.quantity("ripple_db", p.ripple, {0, 20}, {"σ of each satellite's power", "0.5; phone 2"});
-    table.quantity("ripple_time_s", p.ripple_time, {0.1, 1e6}, {"its correlation time", "60; phone 10"});
+    table.quantity("ripple_at_horizon_db", p.ripple_at_horizon, {0, 20},
+                   {"what comes to it at the horizon, times exp(−elevation/20°)", "6; survey 1, phone 0"});
+    table.quantity("ripple_time_s", p.ripple_time, {0.1, 1e6}, {"its correlation time", "20; survey 60, phone 10"});
 }
 
 void read_interference(TableReader& table, ModernLinkParameters& p) {

@@ -7,13 +7,14 @@ namespace {
 
 struct MultipathNumbers {
     Metres floor, at_horizon;
-    Seconds static_time;
+    Seconds static_time, horizon_time{0};
 };
 
 void set_multipath(ModernSettings& s, const MultipathNumbers& numbers) {
     s.measurement.multipath_model.floor = numbers.floor;
     s.measurement.multipath_model.at_horizon = numbers.at_horizon;
     s.measurement.multipath_model.static_time = numbers.static_time;
+    s.measurement.multipath_model.horizon_time = numbers.horizon_time;
 }
 
 void set_weights(ModernSettings& s, Metres both) {
@@ -28,7 +29,8 @@ void make_survey(ModernSettings& s) {
     s.measurement.code_loop.front_end_bandwidth = Hertz(20e6);
     s.measurement.clock.steering = ClockSteering::continuous;
     s.measurement.cn0_resolution = Decibels(0.25);
-    set_multipath(s, {Metres(0.25), Metres(0.5), Seconds(30)});
+    s.propagation.link.ripple_at_horizon = Decibels(1);
+    set_multipath(s, {Metres(0.28), Metres(0.95), Seconds(21)});
     s.navigation.filter.kind = FilterKind::none;
     set_weights(s, Metres(0.36));
 }
@@ -36,20 +38,30 @@ void make_survey(ModernSettings& s) {
 // A u-blox 6 to M8 with a patch antenna.
 void make_consumer(ModernSettings& s) {
     s.measurement.clock.steering = ClockSteering::millisecond_jumps;
-    set_multipath(s, {Metres(0.5), Metres(1.0), Seconds(120)});
+    s.propagation.link.antenna = AntennaPattern(Decibels(3.4), Decibels(19.5), 1.3);
+    s.propagation.link.ripple_at_horizon = Decibels(6);
+    s.propagation.link.ripple_time = Seconds(20);
+    set_multipath(s, {Metres(0.68), Metres(7.5), Seconds(15), Seconds(400)});
     s.navigation.filter.position_memory = Seconds(20);
-    set_weights(s, Metres(0.42));
+    s.navigation.weights.floor = Metres(0.42);
+    s.navigation.weights.at_zenith = Metres(0.7);
+    s.navigation.use.from = DbHz(25);
 }
 
 // A linearly polarised antenna behind glass and a hand: 7 dB less towards the zenith, and echoes of either hand.
 void make_phone(ModernSettings& s) {
-    s.propagation.link.antenna = AntennaPattern(Decibels(-4), Decibels(9), 1.0);
+    s.propagation.link.antenna = AntennaPattern(Decibels(-9.5), Decibels(9), 1.0);
     s.propagation.link.implementation_loss = Decibels(3.5);
     s.propagation.link.ripple = Decibels(2);
     s.propagation.link.ripple_time = Seconds(10);
     s.measurement.clock.steering = ClockSteering::millisecond_jumps;
-    set_multipath(s, {Metres(3), Metres(4), Seconds(30)});
+    set_multipath(s, {Metres(7), Metres(4), Seconds(0.3)});
+    s.measurement.doppler_window = Seconds(0.15);
+    s.measurement.multipath_model.phase_ratio = 0.0002;
     s.measurement.slips_per_hour = 60;
+    s.navigation.accuracy.position_scale = 0.45;
+    s.navigation.filter.velocity_rest_memory = Seconds(5);
+    s.navigation.use.within = Decibels(12);
     s.navigation.filter.position_memory = Seconds(20);
     set_weights(s, Metres(3));
 }
@@ -57,12 +69,13 @@ void make_phone(ModernSettings& s) {
 // Crowns of trees up to 35° and walls whose echoes last while a satellite moves by a degree or less. An antenna that
 // keeps echoes off in the open keeps them off here: the multipath grows by the same factors for all receivers.
 void surround_by_houses(ModernSettings& s) {
-    constexpr double floor_growth = 5, horizon_growth = 5;
+    constexpr double floor_growth = 3.6, horizon_growth = 0.65;
     s.propagation.loss_model.canopy_depth = Metres(11);
     StatisticalMultipath& m = s.measurement.multipath_model;
     m.floor = floor_growth * m.floor;
     m.at_horizon = horizon_growth * m.at_horizon;
-    m.static_time = std::min(m.static_time, Seconds(100));
+    m.static_time = Seconds(100);
+    m.horizon_time = Seconds(0);
 }
 
 }  // namespace

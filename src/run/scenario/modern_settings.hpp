@@ -41,12 +41,18 @@ struct ModernSettings {
     std::optional<Seconds> ephemeris_collection;  ///< nothing: what the search leaves of the board's warm start
     std::filesystem::path ionosphere_maps;        ///< IONEX file; empty: none
     std::vector<std::filesystem::path> tables{};  ///< files of antennas and satellites that `propagation` was read from
+    std::string given{};                          ///< what the scenario says of all of it, as TOML; empty: nothing
     std::vector<std::string> idle_keys;     ///< what a reader should be told of keys that were given and cannot act
     std::string ionosphere_free_told_at{};  ///< "FILE:LINE:COLUMN: KEY: "; empty: the key is not there
 
     /// The numbers of a preset in surroundings.
     static ModernSettings of(ModernPreset preset, Surroundings surroundings = Surroundings::open_sky);
 };
+
+/// The settings with the receiver of a board: the preset's numbers of the receiver, over them the board's, and over
+/// those what the scenario says itself.
+/// @param board_keys BoardProfile::modern; empty: the settings as they are
+ModernSettings with_board(const ModernSettings& settings, const std::string& board_keys);
 
 /// A cause of error by its name in scenario files.
 struct NamedTerm {

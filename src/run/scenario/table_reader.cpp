@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
 
 #include "base/core/words.hpp"
 #include "detail/toml_values.hpp"
@@ -293,6 +294,12 @@ std::optional<std::vector<std::int64_t>> TableReader::whole_numbers(std::string_
     if (!read) return std::nullopt;
     if (values.empty()) return mistake(key, "is an empty list; expected " + expected), std::nullopt;
     return values;
+}
+
+std::string TableReader::toml_text() const {
+    std::ostringstream text;
+    text << table_;
+    return text.str();
 }
 
 std::vector<std::string> TableReader::keys() const {

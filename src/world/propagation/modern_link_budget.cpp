@@ -15,6 +15,12 @@ constexpr double most_cn0 = 99;
 constexpr Nanoseconds ripple_spacing = std::chrono::seconds(5);
 constexpr double geosynchronous_radius = 42164e3;
 
+// Of the ripple at the horizon.
+double low_share(Angle elevation) {
+    constexpr double fall = 20;  // degrees
+    return std::exp(-elevation.deg() / fall);
+}
+
 double link_ratio(double decibels) { return std::pow(10, decibels / 10); }
 
 // Whether a satellite of BeiDou is one of the high ones.
@@ -147,10 +153,12 @@ void ModernLinkBudget::apply(Arrivals& arrivals, const SkyView& /*sky*/, const T
                 // Satellites lie within two deviations: a satellite that is stronger than any real one helps nobody.
                 const double normal = std::clamp(power_term_.stream(seed_, name).normal(), -2.0, 2.0);
                 const double spread = normal * link_.satellite_spread.value();
-                return Power{spread, KnottedProcess({link_.ripple.value(), link_.ripple_time}, ripple_spacing,
+                return Power{spread, KnottedProcess({1, link_.ripple_time}, ripple_spacing,
                                                     power_term_.stream(seed_, name + ".ripple"))};
             });
-            arrival.power_offset = Decibels(power_factor * (power.spread + power.ripple.at(truth.time)));
+            const double ripple =
+                link_.ripple.value() + link_.ripple_at_horizon.value() * low_share(arrival.direction.elevation);
+            arrival.power_offset = Decibels(power_factor * (power.spread + ripple * power.ripple.at(truth.time)));
         }
         arrival.cn0.reset();
         if (arrival.paths > 0) set_cn0(arrival, truth);

@@ -133,6 +133,7 @@ struct ModernLinkParameters {
     std::optional<NoiseEnvironment> man_made;  ///< of P.372, extrapolated to the carrier
     Decibels satellite_spread{1.5};            ///< 1 σ, constant of each satellite
     Decibels ripple{0.5};                      ///< 1 σ, of each satellite
+    Decibels ripple_at_horizon{0};             ///< what comes to it there, times exp(−e/20°): echoes of the ground
     Seconds ripple_time{60};
     /// A jammer of one received power: J over −157 dBW, the nominal signal in an isotropic antenna.
     std::optional<Decibels> jammer_to_signal;

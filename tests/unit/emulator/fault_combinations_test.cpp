@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <random>
 #include <set>
 
@@ -14,17 +15,6 @@ namespace skyloop::test {
 namespace {
 
 constexpr double lull = 0.05;  // s, between the last byte of one second and the first of the next
-
-// A number of each second of a run, by the second of the run in which its epoch lies.
-template <class Number>
-std::vector<double> by_second(const BenchRun& run, std::string_view name, double until, const Number& number) {
-    std::vector<double> values;
-    for (double second = 0; second < until; ++second) {
-        const auto heard = run.between(second - lull, second + 1 - lull, name);
-        values.push_back(heard.empty() ? std::nan("") : number(heard.front()));
-    }
-    return values;
-}
 
 std::string ramped(std::string_view kind, std::string_view parameters) {
     return bench_fault(kind, std::string(parameters) + "\nramp_in_s = 10\nramp_out_s = 8", 20, 40);
@@ -40,21 +30,31 @@ void expect_ramp(const std::vector<double>& share, double tolerance) {
     }
 }
 
-double mean_cn0(const HeardMessage& message) {
+std::map<int, int> strengths(const HeardMessage& message) {
     const NavSat told = decode_payload<NavSat>(parse_frame(message.bytes)->payload).value();
-    double sum = 0, count = 0;
+    std::map<int, int> strengths;
     for (const NavSatItem& satellite : told.satellites)
-        if (satellite.cno > 0) sum += satellite.cno, count += 1;
+        if (satellite.cno > 0) strengths[satellite.gnss_id * 256 + satellite.sv_id] = satellite.cno;
+    return strengths;
+}
+
+// dB, of the satellites that both runs track: the weakest are lost.
+double mean_loss(const std::map<int, int>& sound, const std::map<int, int>& faulty) {
+    double sum = 0, count = 0;
+    for (const auto& [satellite, cn0] : faulty)
+        if (const auto other = sound.find(satellite); other != sound.end()) sum += other->second - cn0, count += 1;
     return count > 0 ? sum / count : 0;
 }
 
 TEST(FaultRamps, OfTheSignalsWeakenTheStrengthsStepByStep) {
     const BenchRun run = bench_run(measuring, ramped("cn0_drop", "attenuation_db = 10"), 60);
-    const auto faulty = by_second(run, "NAV-SAT", 60, mean_cn0);
-    const auto sound = by_second(sound_run(measuring), "NAV-SAT", 60, mean_cn0);
     std::vector<double> share;
-    for (std::size_t i = 0; i < faulty.size(); ++i)
-        share.push_back((sound[i] - faulty[i]) / 10);
+    for (double second = 0; second < 60; ++second) {
+        const auto faulty = run.between(second - lull, second + 1 - lull, "NAV-SAT");
+        const auto sound = sound_run(measuring).between(second - lull, second + 1 - lull, "NAV-SAT");
+        const bool both = !faulty.empty() && !sound.empty();
+        share.push_back(both ? mean_loss(strengths(sound.front()), strengths(faulty.front())) / 10 : std::nan(""));
+    }
     expect_ramp(share, 0.15);  // C/N0 is told in whole dB-Hz, of some ten satellites
 }
 

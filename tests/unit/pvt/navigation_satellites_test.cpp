@@ -19,6 +19,31 @@ using test::sample_time;
 using test::SyntheticSky;
 using test::TrueReceiver;
 
+TEST(NavigationEngine, UsesWhatIsStrongEnoughWithAHysteresis) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    NavigationParameters parameters = plain(FilterKind::none);
+    parameters.use = {.from = DbHz(30), .within = Decibels(12), .hysteresis = Decibels(3), .after = Seconds(5)};
+    NavigationEngine engine(parameters, {&sky});
+    const auto uses_first_at = [&](double second, double cn0) {
+        Observations observations = measure(sky, later(receiver, second));
+        for (Observation& o : observations.signals)
+            o.cn0 = DbHz(45);
+        observations.signals[0].cn0 = DbHz(cn0);
+        const Fix fix = engine.solve(observations, {});
+        return std::any_of(fix.satellites.begin(), fix.satellites.end(), [&](const SatelliteStatus& s) {
+            return s.used && s.id == observations.signals[0].satellite;
+        });
+    };
+    EXPECT_FALSE(uses_first_at(0, 32)) << "13 dB below the fourth strongest";
+    EXPECT_FALSE(uses_first_at(3, 34)) << "tracked for three seconds alone";
+    EXPECT_TRUE(uses_first_at(6, 34));
+    EXPECT_TRUE(uses_first_at(7, 31)) << "within the hysteresis";
+    EXPECT_FALSE(uses_first_at(8, 29));
+    EXPECT_FALSE(uses_first_at(9, 31));
+    EXPECT_TRUE(uses_first_at(10, 33));
+}
+
 TEST(NavigationEngine, TakesTheStrongestWhereItHasNoTimeForAll) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     const TrueReceiver receiver = receiver_at(antenna, sample_time);

@@ -53,6 +53,33 @@ TEST(PositionFilter, RemembersThePositionAtRest) {
     EXPECT_LE(autocorrelation(60), 0.8);
 }
 
+TEST(VelocityFilter, AveragesAtRestAndFollowsAManoeuvre) {
+    FilterParameters parameters;
+    parameters.velocity_memory = Seconds(0.1);
+    parameters.velocity_rest_memory = Seconds(2);
+    VelocityFilter filter;
+    RandomStream noise(7, "noise");
+    const auto told = [&](double second, const Vector3d& velocity) {
+        return filter
+            .update(parameters, input_at(second, home, velocity).time, Velocity<Ecef>(velocity), MetresPerSecond(0.02),
+                    DynamicModel::portable)
+            .vector();
+    };
+    double before = 0, product = 0, square = 0;
+    for (int s = 0; s < 20000; ++s) {
+        const double now = told(s, Vector3d(0.01 * noise.normal(), 0, 0)).x();
+        product += before * now;
+        square += now * now;
+        before = now;
+    }
+    EXPECT_NEAR(product / square, std::exp(-0.5), 0.03) << "remembers for two seconds";
+    // A step beyond the noise: within half a second of epochs at 10 Hz.
+    Vector3d last = Vector3d::Zero();
+    for (int i = 1; i <= 5; ++i)
+        last = told(20000 + 0.1 * i, Vector3d(10, 0, 0));
+    EXPECT_NEAR(last.x(), 10, 0.1);
+}
+
 TEST(PositionFilter, IsExactAtConstantVelocity) {
     PositionFilter filter({});
     const Vector3d velocity(50, -30, 10);

@@ -42,7 +42,7 @@ const std::vector<ListedItems> listed_items{
       0x2091068B, 0x2091068C, 0x2091068D}},
     {"HPG 1.50", "F9P_HPG150", 860, 0x66C395ACB3FBDBF5, {0x10310027}},
     {"HPGL1L5 1.40", "F9P15B_L1L5_140", 846, 0x7B4C1815C7CF23F3, {0x10320001}},
-    {"HPG 2.00", "X20P_HPG200", 556, 0x859C41EA7AC2530E, {0x10320001}},
+    {"HPG 2.00", "X20P_HPG200", 556, 0x3133C67AD819A7D5, {0x10320001}},
 };
 
 std::vector<BoardProfile> boards_with_values() {

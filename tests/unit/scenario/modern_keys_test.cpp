@@ -120,6 +120,21 @@ TEST(ModernKeys, OfTheTroposphereAndLosses) {
     });
 }
 
+TEST(ModernKeys, ABoardStandsBetweenThePresetAndTheScenario) {
+    const ModernSettings said = modern_of(
+        "[model.modern]\npreset = \"survey\"\n[model.modern.tracking]\ncode_bandwidth_hz = 0.7\n"
+        "[model.modern.multipath]\nfloor_m = 0.9\n[model.modern.terms.code_noise]\nscale = 3");
+    const ModernSettings both =
+        with_board(said, "[tracking]\ncode_bandwidth_hz = 0.03\ndoppler_window_s = 0.2\n[solution]\nuse_after_s = 4\n");
+    EXPECT_EQ(both.measurement.code_loop.bandwidth, Hertz(0.7)) << "the scenario's";
+    EXPECT_EQ(both.measurement.doppler_window, Seconds(0.2)) << "the board's";
+    EXPECT_EQ(both.navigation.use.after, Seconds(4)) << "the board's";
+    EXPECT_EQ(both.measurement.code_loop.spacing_chips, 0.1) << "the preset's";
+    EXPECT_EQ(both.measurement.multipath_model.floor, Metres(0.9)) << "no board has it";
+    EXPECT_EQ(both.measurement.code_noise.scale, 3);
+    EXPECT_EQ(with_board(said, "").measurement.doppler_window, said.measurement.doppler_window);
+}
+
 TEST(ModernKeys, OfTheLinkAndItsDisturbances) {
     const auto gain_at = [](const ModernSettings& s, double elevation) {
         return s.propagation.link.antenna.gain({Angle(), Angle::degrees(elevation)}).value();
@@ -134,7 +149,7 @@ TEST(ModernKeys, OfTheLinkAndItsDisturbances) {
         {"link", "navic_dbw", "-150", SKYLOOP_FIELD(propagation.link.received.navic), -150},
         {"link", "antenna_peak_dbic", "5", [&](const ModernSettings& s) { return gain_at(s, 90); }, 5},
         {"link", "antenna_drop_db", "10", [&](const ModernSettings& s) { return gain_at(s, 0); }, 3.4 - 10},
-        {"link", "antenna_exponent", "1", [&](const ModernSettings& s) { return gain_at(s, 30); }, 3.4 - 16.5 / 2},
+        {"link", "antenna_exponent", "1", [&](const ModernSettings& s) { return gain_at(s, 30); }, 3.4 - 19.5 / 2},
         {"link", "antenna_temperature_k", "150", SKYLOOP_FIELD(propagation.link.noise.antenna_temperature), 150},
         {"link", "line_loss_db", "3.5", SKYLOOP_FIELD(propagation.link.noise.line_loss), 3.5},
         {"link", "noise_figure_db", "4.5", SKYLOOP_FIELD(propagation.link.noise.noise_figure), 4.5},

@@ -126,7 +126,6 @@ TEST(ModernSettings, PresetsDiffer) {
     };
     EXPECT_LT(zenith(phone), zenith(consumer));
     EXPECT_EQ(ModernSettings().preset, ModernPreset::consumer);
-    EXPECT_EQ(ModernSettings().measurement.multipath_model.floor, consumer.measurement.multipath_model.floor);
 }
 
 TEST(ModelNames, ModernIsTheFirstAndTheDefault) {

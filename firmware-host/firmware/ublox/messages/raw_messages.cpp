@@ -51,7 +51,7 @@ RxmRawxItem raw_measurement(const Observation& o, const ReportContext& context) 
     item.cno.set(o.cn0.value());
     item.pr_stdev = exponent_code(o.pseudorange_deviation.value(), 0.01);
     item.cp_stdev = phase_deviation_code(o);
-    item.do_stdev = exponent_code(o.doppler_deviation.value(), 0.002);
+    item.do_stdev = exponent_code(std::hypot(o.doppler_deviation.value(), context.board.doppler_deviation_hz), 0.002);
     item.trk_stat =
         static_cast<std::uint8_t>(1 | (o.carrier_phase ? 2 : 0) | (o.carrier_phase && o.half_cycle_resolved ? 4 : 0));
     return item;

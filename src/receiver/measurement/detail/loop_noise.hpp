@@ -38,12 +38,17 @@ std::string signal_stream_name(std::string_view process, SatelliteId satellite, 
 
 /// How far each process of a signal goes in one step of time.
 struct NoiseSteps {
-    GaussMarkovStep code, phase, frequency, multipath, scintillation;
+    GaussMarkovStep code, phase, frequency, scintillation;
 };
 
 /// For processes of unit deviation. A loop of bandwidth B remembers its noise for 1/(4B): the equivalent rectangular
-/// bandwidth of a first-order process is 1/(4τ). @param moving faster than 1 m/s
-NoiseSteps noise_steps(const MeasurementParameters& parameters, Seconds dt, bool moving);
+/// bandwidth of a first-order process is 1/(4τ).
+NoiseSteps noise_steps(const MeasurementParameters& parameters, Seconds dt);
+
+/// The same of the multipath of one signal. @param moving faster than 1 m/s
+GaussMarkovStep multipath_step(const StatisticalMultipath& model, Angle elevation, Seconds dt, bool moving);
+/// What of m1 is left at an elevation.
+double low_share(Angle elevation);
 
 /// A Gauss-Markov process of unit deviation that is told its steps; the deviation may follow the signal.
 class UnitProcess {
@@ -61,7 +66,7 @@ private:
 struct SignalProcesses {
     SignalProcesses(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite, Signal signal);
     /// @param scintillates the phase does: without, its process rests
-    void advance(const NoiseSteps& steps, bool scintillates);
+    void advance(const NoiseSteps& steps, const GaussMarkovStep& multipath_step, bool scintillates);
 
     UnitProcess code, phase, frequency, multipath, scintillation;
 };
@@ -100,8 +105,16 @@ struct LoopDeviations {
 };
 
 /// Thermal jitter at a C/N0, multiplied by what scintillation of the amplitude adds; for S4 above 0.7 as at 0.7.
-/// @param code_loop of this signal @param jitter_ratio of its modulation
-LoopDeviations loop_deviations(const MeasurementParameters& parameters, const CodeLoop& code_loop, double jitter_ratio,
-                               DbHz cn0, const SignalScintillation& scintillation);
+/// With the phase locked the frequency is its change over `doppler_window`, two readings of independent noise, and the
+/// oscillator's own noise; without, that of the frequency loop.
+struct TrackedSignal {
+    const CodeLoop& code_loop;  ///< of this signal
+    double jitter_ratio = 1;    ///< of its modulation
+    Hertz carrier;
+    bool phase_locked = false;
+    Seconds code_locked{1e6};  ///< for so long: the code loop begins wide, and narrows to its bandwidth
+};
+LoopDeviations loop_deviations(const MeasurementParameters& parameters, const TrackedSignal& signal, DbHz cn0,
+                               const SignalScintillation& scintillation);
 
 }  // namespace skyloop::inline receiver

@@ -34,6 +34,8 @@ public:
     void forget();
 
     [[nodiscard]] bool code_locked() const { return code_since_.has_value(); }
+    /// While code_locked().
+    [[nodiscard]] Seconds code_locked_for(GpsTime now) const { return difference(now, *code_since_); }
     [[nodiscard]] bool phase_locked() const { return phase_since_.has_value(); }
     [[nodiscard]] bool half_cycle_resolved() const { return half_cycle_resolved_; }
 
@@ -42,7 +44,7 @@ private:
     void hold_code(const AcquisitionParameters& parameters, DbHz cn0, GpsTime now);
     void hold_phase(const AcquisitionParameters& parameters, const SignalSight& sight, GpsTime now);
     void lose(GpsTime now);
-    Seconds search_time(const AcquisitionParameters& parameters, const SignalSight& sight);
+    Seconds search_time(const AcquisitionParameters& parameters, StartKind knowledge, DbHz cn0, GpsTime now);
 
     bool pilot_;
     RandomStream searches_;

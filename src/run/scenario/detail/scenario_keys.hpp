@@ -24,6 +24,8 @@ void apply_changes(toml::table& table, MistakeList& mistakes, std::span<const Sc
 
 /// @param folder that paths are relative to
 void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
+/// Those of the receiver, which board files have, too: oscillator, loops, search, solution.
+void read_modern_receiver_keys(TableReader& modern, ModernSettings& settings);
 /// Those of the world: air, antenna, interference.
 void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings, const std::filesystem::path& folder);
 void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder);

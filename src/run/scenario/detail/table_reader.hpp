@@ -252,6 +252,8 @@ public:
     /// Of two keys at most one may be there; the mistake is the second one's.
     void not_both(std::string_view key, std::string_view other);
     [[nodiscard]] bool is_boolean(std::string_view key) const { return table_[key].is_boolean(); }
+    /// The table as TOML, for another reading.
+    [[nodiscard]] std::string toml_text() const;
     /// The keys that the table has.
     [[nodiscard]] std::vector<std::string> keys() const;
     /// The caller has dealt with this key itself.

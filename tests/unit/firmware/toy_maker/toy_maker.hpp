@@ -57,7 +57,8 @@ private:
     std::uint64_t revision_ = 1;
 };
 
-inline constexpr MakerRow toy_row{"toy", [](const BoardProfile& board, const ReceiverOptions& options) {
+inline constexpr MakerRow toy_row{"toy",
+                                  [](const BoardProfile& board, const ReceiverOptions& options) {
                                       return std::unique_ptr<Maker>(std::make_unique<ToyMaker>(board, options));
                                   },
                                   [](const BoardProfile&) { return Abilities{.own_prefix = "PTOY"}; }};
