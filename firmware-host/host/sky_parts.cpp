@@ -9,6 +9,7 @@
 #include "data_folders.hpp"
 #include "run/emulator/load_scene.hpp"
 #include "run/emulator/load_track.hpp"
+#include "run/scenario/board_files.hpp"
 #include "run_session.hpp"
 #include "study/analysis/city_run.hpp"
 #include "study/analysis/coverage_map.hpp"
@@ -61,8 +62,11 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
             if (auto doubt = doubt_of_height(*loaded->scene, *place)) warnings.push_back(std::move(*doubt));
     }
     messages.warnings(warnings);
-    auto simulation = make_simulation(
-        scenario, {std::move(navigation->source), geoid.get(), start, data_folders(), 0, loaded->scene});
+    SimulationSetup setup{std::move(navigation->source), geoid.get(), start, data_folders(), 0, loaded->scene};
+    // A board that there is not is told of where its receiver is made.
+    if (const auto board = find_board(scenario.receivers.front().board, board_folders(data_folders())))
+        setup.board_keys = board->modern;
+    auto simulation = make_simulation(scenario, setup);
     if (!simulation) return fail(simulation.error());
     return World{std::move(geoid), std::move(*simulation), start, loaded->scene};
 }

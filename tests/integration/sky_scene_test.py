@@ -136,7 +136,7 @@ class TheReceiverOfAScenario(unittest.TestCase):
             # The mask of the board: ublox-f9p, 10 degrees.
             self.assertTrue(all(s["elevation_deg"] >= 10 for s in used))
             self.check_against_run(path, used)
-            self.assertGreater(len(self.used(path, "--mask", 5)), len(used))
+            self.assertLess(len(self.used(path, "--mask", 40)), len(used))
 
     def test_has_no_time_to_acquire(self):
         with open_folder() as folder:
@@ -145,7 +145,7 @@ class TheReceiverOfAScenario(unittest.TestCase):
 
     def test_takes_as_many_as_its_configuration_says(self):
         with open_folder() as folder:
-            path = self.scenario(folder, 'board = "ublox-f9p"')
+            path = self.scenario(folder, 'board = "ublox-m9"')  # an F9P leaves weaker ones out
             used = self.used(path)
             self.assertEqual(len(used), 32)
             self.check_against_run(path, used)

@@ -9,8 +9,13 @@
 
 namespace skyloop::inline receiver {
 
+namespace {
+constexpr std::chrono::seconds forgotten{5};  // a satellite that was away, or all of them, for longer
+}
+
 void SatelliteChoice::begin(const Observations& observations) {
     constexpr std::size_t needed = 4;
+    if (observations.receive_time - now_ > forgotten) solved_ = false;
     now_ = observations.receive_time;
     from_ = parameters_.from;
     std::vector<double> strengths;
@@ -22,7 +27,6 @@ void SatelliteChoice::begin(const Observations& observations) {
 }
 
 bool SatelliteChoice::takes(const Observation& first) {
-    constexpr std::chrono::seconds forgotten{5};
     const auto [place, is_new] = candidates_.try_emplace(first.satellite, Candidate{now_, now_, false});
     Candidate& candidate = place->second;
     if (!is_new && now_ - candidate.seen > forgotten) candidate = {now_, now_, false};
