@@ -63,7 +63,7 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
     }
     messages.warnings(warnings);
     SimulationSetup setup{std::move(navigation->source), geoid.get(), start, data_folders(), 0, loaded->scene};
-    // A board that there is not is told of where its receiver is made.
+    // The receiver below reports a board that does not exist.
     if (const auto board = find_board(scenario.receivers.front().board, board_folders(data_folders())))
         setup.board_keys = board->modern;
     auto simulation = make_simulation(scenario, setup);

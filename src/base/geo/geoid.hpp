@@ -26,8 +26,8 @@ public:
 
     /// Height of the geoid above the ellipsoid, N.
     [[nodiscard]] Metres undulation(Angle latitude, Angle longitude) const;
-    /// The same as a receiver has it that keeps the geoid at every `step_deg` of latitude and longitude alone, and is
-    /// linear between; 0: the whole grid.
+    /// For a receiver that stores the geoid at every `step_deg` of latitude and longitude, and
+    /// interpolates linearly; 0: the whole grid.
     [[nodiscard]] Metres undulation(Angle latitude, Angle longitude, double step_deg) const;
 
 private:

@@ -77,7 +77,7 @@ private:
     void begin_regime(CorrectionState state);
     Observations prepared(const Observations& observations, const ReceiverSettings& settings);
     [[nodiscard]] DifferentialKind differential_kind() const;
-    [[nodiscard]] Metres told_undulation(const Geodetic& at) const {
+    [[nodiscard]] Metres reported_undulation(const Geodetic& at) const {
         const Geoid* geoid = knowledge_.geoid;
         return geoid ? geoid->undulation(at.latitude, at.longitude, knowledge_.geoid_step_deg) : Metres(0);
     }
@@ -242,7 +242,7 @@ bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const 
     const MotionLimits limits = motion_limits(settings);
     const Geodetic place = to_geodetic(filtered.position);
     const Eigen::Vector3d v = LocalFrame(place).to_enu(filtered.velocity).vector();
-    return above_sea_level(place.height, told_undulation(place)).above_sea_level <= limits.height &&
+    return above_sea_level(place.height, reported_undulation(place)).above_sea_level <= limits.height &&
            std::hypot(v.x(), v.y()) <= limits.horizontal_speed.value() &&
            std::abs(v.z()) <= limits.vertical_speed.value();
 }
@@ -250,7 +250,7 @@ bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const 
 void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings,
                                           Fix& fix) {
     fix.position = to_geodetic(filtered.position);
-    fix.geoid_undulation = told_undulation(fix.position);
+    fix.geoid_undulation = reported_undulation(fix.position);
     const Eigen::Vector3d v = LocalFrame(fix.position).to_enu(filtered.velocity).vector();
     fix.velocity = {v.y(), v.x(), -v.z()};
     fix.speed = MetresPerSecond(std::hypot(v.x(), v.y()));

@@ -24,7 +24,7 @@ struct NavigationKnowledge {
     TransmitterSource* transmitters = nullptr;  ///< orbits and clocks in place of those of the records; may be absent
     /// Where it was when it was last on, which a start knows that is not cold; nothing: it has never been on.
     std::optional<Position<Ecef>> last_place{};
-    double geoid_step_deg = 0;  ///< of the geoid that it tells heights by (Geoid::undulation())
+    double geoid_step_deg = 0;  ///< grid of the reported heights above the sea (Geoid::undulation())
 };
 
 /// Solves position, velocity and time, watches the residuals, and smooths.

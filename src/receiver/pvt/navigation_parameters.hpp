@@ -61,7 +61,7 @@ struct FilterParameters {
     FilterKind kind = FilterKind::smoothed;
     Seconds position_memory{15};      ///< how long single positions are remembered at rest
     Seconds code_smoothing{0};        ///< of the code by the carrier (Hatch), before the solution; 0: none
-    Seconds velocity_memory{0};       ///< of the velocity told, in motion
+    Seconds velocity_memory{0};       ///< of the reported velocity, in motion
     Seconds velocity_rest_memory{0};  ///< the same at rest
     Seconds coasting{2};              ///< how long a lost fix is carried on, as dead reckoning
     Metres static_hold_radius{10};    ///< out of which a held position is let go

@@ -32,7 +32,7 @@ struct FilteredPosition {
     Seconds coasted{0};  ///< since the last solution
 };
 
-/// The velocity that is told: an average over `velocity_memory` of what the Dopplers say, and at rest over
+/// The reported velocity: an average over `velocity_memory` of what the Dopplers say, and at rest over
 /// `velocity_rest_memory`; a step beyond the noise is followed as in motion.
 class VelocityFilter {
 public:

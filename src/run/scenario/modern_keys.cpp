@@ -107,9 +107,9 @@ void read_filter(TableReader& table, FilterParameters& p) {
                {"none: every epoch stands alone", "smoothed; survey none"});
     table.quantity("position_memory_s", p.position_memory, {0.01, 1e5},
                    "how long the filter remembers single positions at rest");
-    table.quantity("velocity_memory_s", p.velocity_memory, {0, 100}, "of the velocity told, in motion; 0: none");
+    table.quantity("velocity_memory_s", p.velocity_memory, {0, 100}, "of the reported velocity, in motion; 0: none");
     table.quantity("velocity_rest_memory_s", p.velocity_rest_memory, {0, 1e5},
-                   {"of the velocity told, at rest; 0: none", "0; phone 5"});
+                   {"of the reported velocity, at rest; 0: none", "0; phone 5"});
     table.quantity("code_smoothing_s", p.code_smoothing, {0, 1e5},
                    "of the code by the carrier, before the solution; 0: none");
     table.quantity("coasting_s", p.coasting, {0, 3600}, "how long a lost fix is carried on, as dead reckoning");
