@@ -45,7 +45,8 @@ class GpsdConfigures(unittest.TestCase):
                 device = next((d for d in devices if d.get("driver") == "u-blox"), device)
             if report["class"] == "TPV" and report.get("mode") == 3 and device:
                 fix, fixed = report, arrived
-            if report["class"] == "SKY" and report.get("satellites"):
+            # Before gpsd has the receiver's NAV-SAT it makes a SKY of each group of GSV, the untracked satellites' too.
+            if report["class"] == "SKY" and report.get("uSat"):
                 sky = report
             if device and device.get("subtype1") and fix and sky:
                 break
