@@ -132,10 +132,10 @@ bool PositionFilter::holds(const PositionInput& input, const ReceiverSettings& s
 FilteredPosition PositionFilter::update(const PositionInput& measured, const ReceiverSettings& settings) {
     PositionInput input = measured;
     if (measured.velocity)
-        input.velocity = told_.update(parameters_, measured.time, *measured.velocity, measured.velocity_deviation,
-                                      settings.dynamic_model);
+        input.velocity = velocity_filter_.update(parameters_, measured.time, *measured.velocity,
+                                                 measured.velocity_deviation, settings.dynamic_model);
     else
-        told_.reset();
+        velocity_filter_.reset();
     const double dt = time_ ? difference(input.time, *time_).value() : 0;
     const bool follows =
         time_ && !interrupted_ && dt > 0 && dt < longest_gap_s && input.velocity && velocity_count_ > 0;

@@ -79,7 +79,7 @@ private:
     bool settled_ = false;                         // half of the memory has been filled
     bool interrupted_ = false;
     std::optional<Eigen::Vector3d> held_;
-    VelocityFilter told_;
+    VelocityFilter velocity_filter_;
 };
 
 }  // namespace skyloop::inline receiver

@@ -21,7 +21,8 @@ public:
     bool takes(const Observation& first);
     /// The epoch has a fix in three dimensions, or none.
     void solved(bool in_three_dimensions) { solved_ = in_three_dimensions; }
-    void reset() { candidates_.clear(); }
+    /// The receiver has started anew, and has no fix.
+    void reset() { *this = SatelliteChoice(parameters_); }
 
 private:
     struct Candidate {

@@ -38,8 +38,8 @@ private:
     std::optional<Geoid> geoid_;
 };
 
-// u-blox's modules: every 10 degrees, linear between. What four of them told where they stood was 56.0, -30.0, -21.35
-// and 47.13 m (docs/fidelity.md).
+// u-blox's modules: every 10 degrees, linear between. What four of them reported at their places was 56.0, -30.0,
+// -21.35 and 47.13 m (docs/fidelity.md).
 TEST_F(BuiltGeoid, IsLinearBetweenTheNodesOfACoarseGrid) {
     const auto coarse = [&](double latitude, double longitude) {
         return geoid().undulation(Angle::degrees(latitude), Angle::degrees(longitude), 10).value();

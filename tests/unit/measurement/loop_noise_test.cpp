@@ -112,11 +112,11 @@ TEST(LoopNoise, ACodeLoopBeginsWideAndNarrows) {
     parameters.multipath_model.floor = Metres(0);
     MeasuredRun run(parameters);
     const Arrivals arrivals = plain_arrivals({g07}, 40);
-    const auto told = [&] { return run.epoch(arrivals).observations.signals.at(0).pseudorange_deviation.value(); };
+    const auto reported = [&] { return run.epoch(arrivals).observations.signals.at(0).pseudorange_deviation.value(); };
     run.epoch(arrivals);
-    const double young = told();
+    const double young = reported();
     run.epochs(arrivals, 30);
-    EXPECT_GT(young, 1.2 * told());
+    EXPECT_GT(young, 1.2 * reported());
 }
 
 TEST(LoopNoise, DopplerGivesAStaticVelocityOfMillimetres) {

@@ -59,7 +59,7 @@ TEST(VelocityFilter, AveragesAtRestAndFollowsAManoeuvre) {
     parameters.velocity_rest_memory = Seconds(2);
     VelocityFilter filter;
     RandomStream noise(7, "noise");
-    const auto told = [&](double second, const Vector3d& velocity) {
+    const auto filtered = [&](double second, const Vector3d& velocity) {
         return filter
             .update(parameters, input_at(second, home, velocity).time, Velocity<Ecef>(velocity), MetresPerSecond(0.02),
                     DynamicModel::portable)
@@ -67,7 +67,7 @@ TEST(VelocityFilter, AveragesAtRestAndFollowsAManoeuvre) {
     };
     double before = 0, product = 0, square = 0;
     for (int s = 0; s < 20000; ++s) {
-        const double now = told(s, Vector3d(0.01 * noise.normal(), 0, 0)).x();
+        const double now = filtered(s, Vector3d(0.01 * noise.normal(), 0, 0)).x();
         product += before * now;
         square += now * now;
         before = now;
@@ -76,7 +76,7 @@ TEST(VelocityFilter, AveragesAtRestAndFollowsAManoeuvre) {
     // A step beyond the noise: within half a second of epochs at 10 Hz.
     Vector3d last = Vector3d::Zero();
     for (int i = 1; i <= 5; ++i)
-        last = told(20000 + 0.1 * i, Vector3d(10, 0, 0));
+        last = filtered(20000 + 0.1 * i, Vector3d(10, 0, 0));
     EXPECT_NEAR(last.x(), 10, 0.1);
 }
 
