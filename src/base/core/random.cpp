@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "base/core/bytes.hpp"
 
@@ -55,6 +56,13 @@ double RandomStream::normal() {
         spare_normal_ = v * factor;
         return u * factor;
     }
+}
+
+double IndexedNormals::at(std::int64_t index) const {
+    std::uint64_t x = key_ ^ (static_cast<std::uint64_t>(index) * 0xd1342543de82ef95u);
+    const double u = static_cast<double>((split_mix(x) >> 11) + 1) * 0x1p-53;  // (0, 1]
+    const double v = static_cast<double>(split_mix(x) >> 11) * 0x1p-53;
+    return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
 }
 
 GaussMarkovStep gauss_markov_step(const GaussMarkovParameters& parameters, Seconds dt) {

@@ -34,6 +34,18 @@ private:
     std::optional<double> spare_normal_;
 };
 
+/// Standard normal numbers by index: the order in which they are asked for does not matter.
+class IndexedNormals {
+public:
+    /// @param stream gives its first number as the key
+    explicit IndexedNormals(RandomStream stream) : key_(stream.bits()) {}
+    /// By Box and Muller (1958), from SplitMix64.
+    [[nodiscard]] double at(std::int64_t index) const;
+
+private:
+    std::uint64_t key_;
+};
+
 /// The two numbers that say all of a first-order Gauss-Markov process.
 struct GaussMarkovParameters {
     double sigma = 0;          ///< stationary standard deviation, in the unit of the process

@@ -50,15 +50,16 @@ std::string signal_stream_name(std::string_view process, SatelliteId satellite, 
 namespace {
 
 constexpr double strongest_tracked_s4 = 0.7;
-
-Seconds memory_of(Hertz bandwidth) { return Seconds(bandwidth.value() > 0 ? 1 / (4 * bandwidth.value()) : 0); }
+constexpr Seconds least_memory_of_slow{2};
 
 }  // namespace
+
+Seconds memory_of(Hertz bandwidth) { return Seconds(bandwidth.value() > 0 ? 1 / (4 * bandwidth.value()) : 0); }
 
 NoiseSteps noise_steps(const MeasurementParameters& parameters, Seconds dt) {
     const auto unit = [dt](Seconds correlation_time) { return gauss_markov_step({1, correlation_time}, dt); };
     const Seconds window = parameters.doppler_window;
-    return {unit(memory_of(parameters.code_loop.bandwidth)), unit(memory_of(parameters.phase_loop.bandwidth)),
+    return {unit(memory_of(parameters.phase_loop.bandwidth)),
             unit(window > Seconds(0) ? window * 0.5 : memory_of(parameters.frequency_loop.bandwidth)),
             unit(parameters.scintillation_time)};
 }
@@ -68,25 +69,41 @@ double low_share(Angle elevation) {
     return std::exp(-elevation.deg() / fall);
 }
 
-GaussMarkovStep multipath_step(const StatisticalMultipath& model, Angle elevation, Seconds dt, bool moving) {
-    const Seconds at_rest = model.static_time + model.horizon_time * low_share(elevation);
-    return gauss_markov_step({1, moving ? model.moving_time : at_rest}, dt);
+Seconds multipath_memory(const StatisticalMultipath& model, Angle elevation, bool moving) {
+    return moving ? model.moving_time : model.static_time + model.horizon_time * low_share(elevation);
+}
+
+SlowProcess::SlowProcess(Seconds shortest, RandomStream stream) : fast_(stream), value_(fast_.value()) {
+    // The knots lie a tenth of the memory apart, or a second: that is close enough for a smooth path.
+    constexpr Seconds whole_second{10};
+    if (shortest >= least_memory_of_slow)
+        slow_.emplace(GaussMarkovParameters{1, std::max(shortest, whole_second)}, std::chrono::seconds(1), stream);
+}
+
+void SlowProcess::advance(GpsTime now, Seconds memory, Seconds dt) {
+    if (slow_) {
+        slow_->set_correlation_time(memory);
+        value_ = slow_->at(now);
+    } else if (dt > Seconds(0)) {
+        fast_.advance(gauss_markov_step({1, memory}, dt));
+        value_ = fast_.value();
+    }
 }
 
 SignalProcesses::SignalProcesses(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite,
                                  Signal signal)
-    : code(parameters.code_noise.stream(seed, signal_stream_name("code_noise", satellite, signal))),
+    : code(memory_of(parameters.code_loop.bandwidth),
+           parameters.code_noise.stream(seed, signal_stream_name("code_noise", satellite, signal))),
+      multipath(std::min(parameters.multipath_model.static_time, parameters.multipath_model.moving_time),
+                parameters.multipath.stream(seed, signal_stream_name("multipath", satellite, signal))),
       phase(parameters.phase_noise.stream(seed, signal_stream_name("phase_noise", satellite, signal))),
       frequency(parameters.doppler_noise.stream(seed, signal_stream_name("doppler_noise", satellite, signal))),
-      multipath(parameters.multipath.stream(seed, signal_stream_name("multipath", satellite, signal))),
       scintillation(
           parameters.scintillation.stream(seed, signal_stream_name("phase_scintillation", satellite, signal))) {}
 
-void SignalProcesses::advance(const NoiseSteps& steps, const GaussMarkovStep& multipath_step, bool scintillates) {
-    code.advance(steps.code);
+void SignalProcesses::advance(const NoiseSteps& steps, bool scintillates) {
     phase.advance(steps.phase);
     frequency.advance(steps.frequency);
-    multipath.advance(multipath_step);
     if (scintillates) scintillation.advance(steps.scintillation);
 }
 

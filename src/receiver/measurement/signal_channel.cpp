@@ -108,17 +108,18 @@ void SignalChannel::forget() {
 }
 
 void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& epoch) {
-    if (!new_) {
-        const Seconds passed = difference(epoch.now, processed_);
-        processes_.advance(
-            passed == epoch.since_last ? epoch.steps : noise_steps(epoch.parameters, passed),
-            multipath_step(epoch.parameters.multipath_model, input.arrival.direction.elevation, passed, epoch.moving),
-            deviations_.scintillation.rad() > 0);
-    }
+    const Seconds passed = new_ ? Seconds(0) : difference(epoch.now, processed_);
+    const MeasurementParameters& parameters = epoch.parameters;
+    processes_.code.advance(epoch.now, memory_of(code_loop_.bandwidth), passed);
+    processes_.multipath.advance(
+        epoch.now, multipath_memory(parameters.multipath_model, input.arrival.direction.elevation, epoch.moving),
+        passed);
+    if (!new_)
+        processes_.advance(passed == epoch.since_last ? epoch.steps : noise_steps(parameters, passed),
+                           deviations_.scintillation.rad() > 0);
     new_ = false;
     processed_ = epoch.now;
 
-    const MeasurementParameters& parameters = epoch.parameters;
     const double metres_per_radian = speed_of_light / input.signal.carrier.value() / (2 * std::numbers::pi);
     terms_.code_noise = deviations_.code * (parameters.code_noise.factor() * processes_.code.value());
     const double thermal = parameters.phase_noise.factor() * deviations_.phase.rad() * processes_.phase.value();
@@ -229,6 +230,9 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.called_unhealthy = arrival.called_unhealthy;
     if (arrival.echoes_known) result.correlation_distortion = std::abs(echoes_.distortion);
     if (epoch.corrected) result.correction = correction(input, Metres(iono));
+    // SBAS corrects GPS alone today (EGNOS Open Service SDD 2.3, WAAS Performance Standard).
+    if (satellite_.constellation == Constellation::gps)
+        result.augmentation = arrival.signal_in_space_error + Metres(iono);
     if (!lock_.phase_locked()) return result;
     const double carrier_path = path - iono + terms_.phase_multipath.value() + terms_.phase_noise.value();
     result.carrier_phase = carrier_path / wavelength + count_.cycles();

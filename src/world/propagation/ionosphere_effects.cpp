@@ -9,11 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/time/knotted_process.hpp"
 #include "world/gnss/atmosphere.hpp"
 #include "world/gnss/constants.hpp"
 #include "world/gnss/nequick_g.hpp"
 #include "world/gnss/shell_ionosphere.hpp"
-#include "world/propagation/knotted_process.hpp"
+#include "world/propagation/per_satellite.hpp"
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/ray_geometry.hpp"
 

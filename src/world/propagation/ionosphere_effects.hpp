@@ -9,12 +9,13 @@
 #include <optional>
 
 #include "base/core/result.hpp"
+#include "base/time/knotted_process.hpp"
 #include "base/time/utc_time.hpp"
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
-#include "world/propagation/knotted_process.hpp"
 #include "world/propagation/modern_effects.hpp"
 #include "world/propagation/modern_parameters.hpp"
+#include "world/propagation/per_satellite.hpp"
 #include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop::inline world {

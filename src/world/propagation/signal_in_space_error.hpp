@@ -3,8 +3,9 @@
 
 #include <cstdint>
 
-#include "world/propagation/knotted_process.hpp"
+#include "base/time/knotted_process.hpp"
 #include "world/propagation/modern_parameters.hpp"
+#include "world/propagation/per_satellite.hpp"
 #include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop::inline world {

@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "base/geo/geoid.hpp"
+#include "base/time/knotted_process.hpp"
 #include "base/time/utc_time.hpp"
 #include "world/gnss/atmosphere.hpp"
-#include "world/propagation/knotted_process.hpp"
 #include "world/propagation/modern_parameters.hpp"
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/propagation_parameters.hpp"

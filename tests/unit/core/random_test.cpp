@@ -107,5 +107,24 @@ TEST(RandomStream, DrawingFromOneDoesNotMoveAnother) {
     }
 }
 
+TEST(IndexedNormals, AreStandardNormalAndKnownByTheirIndex) {
+    const IndexedNormals numbers(RandomStream(4, "x")), same(RandomStream(4, "x")), other(RandomStream(5, "x"));
+    double sum = 0, square = 0, fourth = 0, lagged = 0;
+    constexpr int count = 100'000;
+    for (int i = 0; i < count; ++i) {
+        const double value = numbers.at(i - count / 2);
+        sum += value;
+        square += value * value;
+        fourth += value * value * value * value;
+        lagged += value * numbers.at(i - count / 2 + 1);
+    }
+    EXPECT_NEAR(sum / count, 0, 0.015);
+    EXPECT_NEAR(square / count, 1, 0.02);
+    EXPECT_NEAR(fourth / count, 3, 0.12);
+    EXPECT_NEAR(lagged / count, 0, 0.015);
+    EXPECT_EQ(numbers.at(17), same.at(17));
+    EXPECT_NE(numbers.at(17), other.at(17));
+}
+
 }  // namespace
 }  // namespace skyloop

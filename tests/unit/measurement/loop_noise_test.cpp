@@ -286,5 +286,20 @@ TEST(LoopNoise, AnInterruptedSignalKeepsItsDistribution) {
     EXPECT_NEAR(std::sqrt(multipath) / (0.5 + std::exp(-4.5)), 1, 0.06);
 }
 
+// Slow errors of the code are the same at the same seconds, whatever the rate.
+TEST(LoopNoise, ADayIsTheSameAtOneAndAtTenHertz) {
+    MeasurementParameters parameters;
+    parameters.code_loop.bandwidth = Hertz(0.01);
+    MeasuredRun seldom(parameters), often(parameters, 0.1);
+    const Arrivals arrivals = plain_arrivals({g07});
+    const ErrorSeries once = errors_of(seldom, arrivals, 300);
+    const ErrorSeries tenfold = errors_of(often, arrivals, 3000);
+    for (std::size_t i = 0; i < 300; ++i) {
+        EXPECT_EQ(once.multipath.values[i], tenfold.multipath.values[10 * i]) << i;
+        EXPECT_NEAR(once.code.values[i], tenfold.code.values[10 * i], 1e-9) << i;
+    }
+    EXPECT_GT(once.multipath.deviation(), 0.1);
+}
+
 }  // namespace
 }  // namespace skyloop

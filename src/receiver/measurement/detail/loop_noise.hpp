@@ -10,6 +10,7 @@
 #include "base/core/random.hpp"
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
+#include "base/time/knotted_process.hpp"
 #include "receiver/measurement/measurement_parameters.hpp"
 #include "receiver/measurement/tracking_jitter.hpp"
 #include "world/gnss/satellite.hpp"
@@ -38,15 +39,18 @@ std::string signal_stream_name(std::string_view process, SatelliteId satellite, 
 
 /// How far each process of a signal goes in one step of time.
 struct NoiseSteps {
-    GaussMarkovStep code, phase, frequency, scintillation;
+    GaussMarkovStep phase, frequency, scintillation;
 };
 
-/// For processes of unit deviation. A loop of bandwidth B remembers its noise for 1/(4B): the equivalent rectangular
-/// bandwidth of a first-order process is 1/(4τ).
+/// How long a loop of bandwidth B remembers its noise: 1/(4B), as the equivalent rectangular bandwidth of a first-order
+/// process is 1/(4τ).
+Seconds memory_of(Hertz bandwidth);
+
+/// For processes of unit deviation.
 NoiseSteps noise_steps(const MeasurementParameters& parameters, Seconds dt);
 
-/// The same of the multipath of one signal. @param moving faster than 1 m/s
-GaussMarkovStep multipath_step(const StatisticalMultipath& model, Angle elevation, Seconds dt, bool moving);
+/// How long the multipath of one signal is remembered. @param moving faster than 1 m/s
+Seconds multipath_memory(const StatisticalMultipath& model, Angle elevation, bool moving);
 /// What of m1 is left at an elevation.
 double low_share(Angle elevation);
 
@@ -62,13 +66,30 @@ private:
     double value_;
 };
 
+/// The same with a path that does not depend on the rate of the epochs, where it remembers for two seconds or more: it
+/// is drawn at whole seconds of GPS time then.
+class SlowProcess {
+public:
+    /// @param shortest that it will ever remember
+    SlowProcess(Seconds shortest, RandomStream stream);
+    /// @param memory from now on @param dt since the last time
+    void advance(GpsTime now, Seconds memory, Seconds dt);
+    [[nodiscard]] double value() const { return value_; }
+
+private:
+    UnitProcess fast_;
+    std::optional<KnottedProcess> slow_;
+    double value_;
+};
+
 /// The processes of one signal, each with a stream of its own.
 struct SignalProcesses {
     SignalProcesses(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite, Signal signal);
     /// @param scintillates the phase does: without, its process rests
-    void advance(const NoiseSteps& steps, const GaussMarkovStep& multipath_step, bool scintillates);
+    void advance(const NoiseSteps& steps, bool scintillates);
 
-    UnitProcess code, phase, frequency, multipath, scintillation;
+    SlowProcess code, multipath;  ///< which are advanced by themselves
+    UnitProcess phase, frequency, scintillation;
 };
 
 /// How the power of a signal comes and goes while the ionosphere scintillates.

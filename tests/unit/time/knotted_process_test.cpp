@@ -1,4 +1,4 @@
-#include "world/propagation/knotted_process.hpp"
+#include "base/time/knotted_process.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,6 +56,39 @@ TEST(KnottedProcess, DoesNotDependOnHowOftenItIsLookedAt) {
         if (i % 100 != 0) continue;
         EXPECT_EQ(seldom.at(knotted_start + std::chrono::milliseconds(100) * i), value);
     }
+}
+
+// The first look begins at the start of a block of 32 knots.
+TEST(KnottedProcess, DoesNotDependOnWhenItWasFirstLookedAt) {
+    const GpsTime block = GpsTime(knotted_start.time_since_epoch() / seconds(960) * seconds(960));
+    int alike = 0;
+    for (int later = 1; later <= 20; ++later) {
+        KnottedProcess early({1, Seconds(600)}, seconds(30), RandomStream(1, "x"));
+        KnottedProcess late({1, Seconds(600)}, seconds(30), RandomStream(1, "x"));
+        early.at(block + seconds(40));
+        const GpsTime then = block + seconds(40) + seconds(30) * later;
+        alike += early.at(then) == late.at(then) ? 1 : 0;
+    }
+    EXPECT_EQ(alike, 20);
+    KnottedProcess often({1, Seconds(60)}, seconds(6), RandomStream(1, "x"));
+    KnottedProcess once({1, Seconds(60)}, seconds(6), RandomStream(1, "x"));
+    for (int i = 0; i < 1200; ++i)
+        often.at(knotted_start + seconds(1) * i);
+    EXPECT_NEAR(once.at(knotted_start + seconds(1200)), often.at(knotted_start + seconds(1200)), 0.05);
+}
+
+TEST(KnottedProcess, ForgetsItselfAtTheRateThatItIsTold) {
+    KnottedProcess process({1, Seconds(600)}, seconds(1), RandomStream(3, "x"));
+    process.set_correlation_time(Seconds(5));
+    double square = 0, lagged = 0, before = process.at(knotted_start);
+    for (int i = 1; i < 20'000; ++i) {
+        const double value = process.at(knotted_start + seconds(5) * i);
+        square += value * value;
+        lagged += value * before;
+        before = value;
+    }
+    EXPECT_NEAR(square / 20'000, 1, 0.05);
+    EXPECT_NEAR(lagged / square, std::exp(-1), 0.03);
 }
 
 TEST(KnottedProcess, IsSmoothAndKnowsItsRate) {

@@ -1,42 +1,21 @@
 /// Errors that wander smoothly: random processes drawn at fixed instants, with a smooth curve between them.
-/// What an effect keeps for each satellite that it has met.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <utility>
-#include <vector>
 
 #include "base/core/random.hpp"
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
-#include "world/gnss/satellite.hpp"
 
-namespace skyloop::inline world {
-
-/// States by satellite, in a sorted vector: few, and looked up at every epoch.
-template <class State>
-class PerSatellite {
-public:
-    /// The state of a satellite. @param make makes it, from the satellite, when it is met for the first time
-    template <class Make>
-    State& of(SatelliteId satellite, Make&& make) {
-        const auto at =
-            std::lower_bound(states_.begin(), states_.end(), satellite,
-                             [](const std::pair<SatelliteId, State>& s, SatelliteId id) { return s.first < id; });
-        if (at != states_.end() && at->first == satellite) return at->second;
-        return states_.emplace(at, satellite, make(satellite))->second;
-    }
-
-private:
-    std::vector<std::pair<SatelliteId, State>> states_;
-};
+namespace skyloop::inline base {
 
 /// A random process that is drawn at knots, whole multiples of a spacing in GPS time, and runs through them on a cubic
-/// (Catmull and Rom 1974). It has a rate, and its path does not depend on how often it is looked at.
+/// (Catmull and Rom 1974). It has a rate, and its path depends neither on how often it is looked at nor, but for the
+/// start of a block of knots, on when it was first: each knot has random numbers of its own, and the first look, and one
+/// after a long absence, begins at the start of its block.
 ///
-/// State: the four knots around the present instant and a stream of random numbers.
+/// State: the four knots around the present instant.
 class KnottedProcess {
 public:
     /// A first-order Gauss-Markov process from its stationary distribution (MODELS.md 7.15).
@@ -48,16 +27,19 @@ public:
 
     /// Moves to `time`, not earlier than before, and returns the value there.
     double at(GpsTime time);
+    /// From the next knot on it forgets itself at another rate, with the same σ.
+    void set_correlation_time(Seconds time);
     /// Derivative at the time of the last at(), per second.
     [[nodiscard]] double rate() const { return rate_; }
 
 private:
-    void draw(std::int64_t steps);
+    void draw(std::int64_t steps, std::int64_t knot);
+    void start(std::int64_t knot);
     void move_to(std::int64_t knot);
 
     GaussMarkovParameters parameters_;
     Nanoseconds spacing_;
-    RandomStream stream_;
+    IndexedNormals normals_;
     bool walk_ = false, started_ = false;
     GaussMarkovStep step_;  // over one spacing
     std::int64_t knot_ = 0;
@@ -66,4 +48,4 @@ private:
     double rate_ = 0;
 };
 
-}  // namespace skyloop::inline world
+}  // namespace skyloop::inline base

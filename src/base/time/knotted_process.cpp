@@ -1,12 +1,13 @@
-#include "world/propagation/knotted_process.hpp"
+#include "base/time/knotted_process.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace skyloop::inline world {
+namespace skyloop::inline base {
 namespace {
 
 constexpr double knots_of_memory = 10;
+constexpr std::int64_t knots_of_block = 32;
 constexpr Nanoseconds closest_knots = std::chrono::milliseconds(1);
 
 Nanoseconds spacing_within(Nanoseconds most, Seconds correlation_time) {
@@ -20,7 +21,7 @@ Nanoseconds spacing_within(Nanoseconds most, Seconds correlation_time) {
 KnottedProcess::KnottedProcess(GaussMarkovParameters parameters, Nanoseconds spacing, RandomStream stream)
     : parameters_(parameters),
       spacing_(spacing_within(spacing, parameters.correlation_time)),
-      stream_(stream),
+      normals_(stream),
       step_(gauss_markov_step(parameters, to_seconds(spacing_))) {}
 
 KnottedProcess KnottedProcess::walk(double per_root_second, Nanoseconds spacing, RandomStream stream) {
@@ -30,36 +31,40 @@ KnottedProcess KnottedProcess::walk(double per_root_second, Nanoseconds spacing,
     return process;
 }
 
-void KnottedProcess::draw(std::int64_t steps) {
-    GaussMarkovStep step = step_;
-    if (steps > 1) {
-        const double count = static_cast<double>(steps);
-        step = walk_ ? GaussMarkovStep{1, step_.noise * std::sqrt(count)}
-                     : gauss_markov_step(parameters_, to_seconds(spacing_) * count);
-    }
-    newest_ = step.phi * newest_ + step.noise * stream_.normal();
+void KnottedProcess::set_correlation_time(Seconds time) {
+    if (time == parameters_.correlation_time) return;
+    parameters_.correlation_time = time;
+    step_ = gauss_markov_step(parameters_, to_seconds(spacing_));
+}
+
+// The value at a knot, so many steps after the newest; only a walk takes more than one.
+void KnottedProcess::draw(std::int64_t steps, std::int64_t knot) {
+    newest_ = step_.phi * newest_ + step_.noise * std::sqrt(static_cast<double>(steps)) * normals_.at(knot);
     std::rotate(values_.begin(), values_.begin() + 1, values_.end());
     values_.back() = newest_;
 }
 
-void KnottedProcess::move_to(std::int64_t knot) {
-    if (!started_) {
-        newest_ = walk_ ? 0 : parameters_.sigma * stream_.normal();
-        values_.back() = newest_;
-        for (int i = 0; i < 3; ++i)
-            draw(1);
-        started_ = true;
-    } else {
-        // Of a long absence only the end is drawn: all four knots anew.
-        const std::int64_t missed = knot - knot_ - 4;
-        if (missed > 0) {
-            draw(missed + 1);
-            knot_ += missed + 1;
-        }
-        for (; knot_ < knot; ++knot_)
-            draw(1);
-    }
+void KnottedProcess::start(std::int64_t knot) {
+    std::int64_t first = knot - 1;
+    if (!walk_) first -= ((first % knots_of_block) + knots_of_block) % knots_of_block;
+    newest_ = walk_ ? 0 : parameters_.sigma * normals_.at(first);
+    values_.back() = newest_;
+    while (first < knot + 2)
+        draw(1, ++first);
     knot_ = knot;
+    started_ = true;
+}
+
+void KnottedProcess::move_to(std::int64_t knot) {
+    const std::int64_t missed = started_ ? knot - knot_ - 4 : 0;
+    if (!started_ || (missed > knots_of_block && !walk_)) {
+        start(knot);
+    } else if (missed > 0 && walk_) {  // of a long absence only the end is drawn: all four knots anew
+        knot_ += missed + 1;
+        draw(missed + 1, knot_ + 2);
+    }
+    for (; knot_ < knot; ++knot_)
+        draw(1, knot_ + 3);
 }
 
 double KnottedProcess::at(GpsTime time) {
@@ -75,4 +80,4 @@ double KnottedProcess::at(GpsTime time) {
     return from + u * (slope_from + u * (c2 + u * c3));
 }
 
-}  // namespace skyloop::inline world
+}  // namespace skyloop::inline base
