@@ -105,6 +105,7 @@ ReceiverConfig SentenceSettings::config() const {
     if (changed(dynamic_model)) config.settings.dynamic_model = dynamic_model_of(value(dynamic_model));
     config.limits.held_below = MetresPerSecond(static_cast<double>(value(held_below_cmps)) / 100);
     if (changed(held_below_cmps)) config.settings.static_hold_below = config.limits.held_below;
+    config.settings.sbas_corrections = flag(sbas_corrections);
     put_systems(config);
     for (const PortId port : board_.ports)
         if (is_uart(port))

@@ -28,7 +28,7 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
     SharedError ionosphere, north, east, troposphere;
     for (const RangeOutcome& r : solution.ranges) {
         if (!r.used) continue;
-        const double delay = r.ionosphere.value();
+        const double delay = solution.ionosphere_doubt * r.ionosphere.value();
         const double away = gradient_arm(r.direction.elevation);
         ionosphere.add(r, parameters.ionosphere_share * delay);
         north.add(r, parameters.ionosphere_tilt * delay * away * std::cos(r.direction.azimuth.rad()));

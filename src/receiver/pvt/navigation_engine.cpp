@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "base/geo/local_frame.hpp"
+#include "receiver/pvt/equation_maker.hpp"
 #include "receiver/pvt/expected_error.hpp"
 #include "receiver/pvt/integrity.hpp"
+#include "receiver/pvt/motion_check.hpp"
 #include "receiver/pvt/observation_equations.hpp"
 #include "receiver/pvt/position_filter.hpp"
-#include "receiver/pvt/satellite_choice.hpp"
 #include "receiver/pvt/satellite_report.hpp"
 #include "receiver/pvt/single_point.hpp"
 #include "world/gnss/constants.hpp"
@@ -19,12 +20,16 @@ namespace {
 
 constexpr double coasting_acceleration = 1;  // m/s², by which a lost fix may have left its course
 
+// Two carriers are of use where nothing is told of their delay, too.
+UntoldDelay untold_delay(const CorrectionParameters& parameters) {
+    const bool two_carriers = parameters.ionosphere_free || parameters.ionosphere_memory > Seconds(0);
+    return two_carriers ? UntoldDelay::none : UntoldDelay::unknown;
+}
+
 GpsTime whole_millisecond(GpsTime time) { return std::chrono::round<std::chrono::milliseconds>(time); }
 
 // What was made of one epoch before the filter.
-struct EpochSolution {
-    std::vector<RangeEquation> equations;
-    std::vector<const Observation*> primaries;  // the observation behind each equation
+struct EpochSolution : EpochEquations {
     std::optional<SinglePoint> point;
     std::optional<SinglePointVelocity> velocity;
     bool consistent = true, time_only = false;
@@ -38,7 +43,7 @@ public:
         : parameters_(parameters),
           knowledge_(knowledge),
           received_(*knowledge.broadcast, parameters),
-          transmitters_(received_, parameters.corrections.ionosphere_free ? UntoldDelay::none : UntoldDelay::unknown),
+          transmitters_(received_, untold_delay(parameters.corrections)),
           corrections_(parameters.corrections,
                        {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
           air_({IonosphereCorrection::klobuchar, TroposphereCorrection::niell, 0.5, true, false},
@@ -47,7 +52,7 @@ public:
           smoother_(parameters.filter.code_smoothing),
           filter_(parameters.filter),
           report_(*knowledge.broadcast, received_),
-          choice_(parameters.use),
+          maker_(parameters),
           position_(knowledge.last_place) {}
 
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
@@ -65,11 +70,11 @@ private:
     TransmitterSource& transmitters() { return knowledge_.transmitters ? *knowledge_.transmitters : transmitters_; }
     [[nodiscard]] GpsTime presumed_time(const Observations& observations) const;
     EpochSolution solve_epoch(const Observations& observations, const ReceiverSettings& settings);
-    void add_equations(const Observations& observations, const ReceiverSettings& settings, EpochSolution& epoch);
     [[nodiscard]] std::optional<HeldHeight> held_height(const ReceiverSettings& settings) const;
     void solve_position(const ReceiverSettings& settings, EpochSolution& epoch);
     void solve_doppler(EpochSolution& epoch) const;
-    [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const;
+    [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings);
+    [[nodiscard]] FixType type_of(const EpochSolution& epoch) const;
     void fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix);
     void fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings, Fix& fix);
     Metres fill_accuracy(const EpochSolution& epoch, Fix& fix) const;
@@ -92,7 +97,8 @@ private:
     CodeSmoother smoother_;
     PositionFilter filter_;
     SatelliteReport report_;
-    SatelliteChoice choice_;
+    EquationMaker maker_;
+    MotionCheck motion_;
 
     std::optional<int> restarts_;
     GpsTime time_;                           // true, as well as the receiver can tell
@@ -115,7 +121,8 @@ void NavigationEngine::State::begin(const ReceiverSettings& settings, GpsTime ti
     filter_.reset();
     smoother_.reset();
     report_.reset();
-    choice_.reset();
+    maker_.reset();
+    motion_.reset();
     clock_known_at_.reset();
     if (settings.start != StartKind::cold) return;
     position_.reset();
@@ -130,32 +137,6 @@ GpsTime NavigationEngine::State::presumed_time(const Observations& observations)
         bias_m = clock_bias_.value() +
                  clock_drift_.value() * difference(observations.receive_time, *clock_known_at_).value();
     return whole_millisecond(advanced(observations.receive_time, Seconds(-bias_m / speed_of_light)));
-}
-
-void NavigationEngine::State::add_equations(const Observations& observations, const ReceiverSettings& settings,
-                                            EpochSolution& epoch) {
-    const std::vector<Observation>& all = observations.signals;
-    choice_.begin(observations);
-    for (std::size_t i = 0; i < all.size();) {
-        // The signals of one satellite: its first one, or what there is, and the others.
-        const Observation* first = nullptr;
-        InplaceVector<const Observation*, most_signals> others;
-        const SatelliteId id = all[i].satellite;
-        for (; i < all.size() && all[i].satellite == id; ++i) {
-            if (!all[i].pseudorange || all[i].cn0 < settings.minimum_cn0) continue;
-            const Observation* other = &all[i];
-            if (first == nullptr || other->signal == first_signal(id.constellation)) std::swap(first, other);
-            if (other != nullptr && others.size() < most_signals) others.push_back(other);
-        }
-        if (first == nullptr || (id.constellation == Constellation::sbas && !settings.sbas_ranging)) continue;
-        const bool combined = parameters_.corrections.ionosphere_free && corrected_ == CorrectionState::none;
-        if (!combined) others = {};
-        auto made = range_equation(transmitters(), *first, others, observations.receive_time);
-        if (!made) continue;
-        made->selected = choice_.takes(*first);
-        epoch.equations.push_back(*made);
-        epoch.primaries.push_back(first);
-    }
 }
 
 // The less exact the longer ago it was solved. What flies holds none (RECEIVER.md 4.8).
@@ -177,11 +158,15 @@ void NavigationEngine::State::solve_position(const ReceiverSettings& settings, E
         epoch.time_only = true;
         return;
     }
-    std::optional<CheckedSolution> checked = solve_free_of_ionosphere(monitor_, epoch.equations, setup);
+    const auto solved = [&] {
+        return c.ionosphere_free ? solve_free_of_ionosphere(monitor_, epoch.equations, setup)
+                                 : monitor_.solve(epoch.equations, setup);
+    };
+    std::optional<CheckedSolution> checked = solved();
     if (!checked && setup.start) {
         // Perhaps the last position is too far off to begin with.
         setup.start.reset();
-        checked = solve_free_of_ionosphere(monitor_, epoch.equations, setup);
+        checked = solved();
         setup.start = position_;
     }
     if (!checked) setup.held_height = held_height(settings);
@@ -220,7 +205,9 @@ EpochSolution NavigationEngine::State::solve_epoch(const Observations& observati
         epoch = EpochSolution();
         if (!received_.time_known()) return epoch;
         transmitters_.choose_records_at(time_);
-        add_equations(observations, settings, epoch);
+        const bool corrected = corrected_ != CorrectionState::none;
+        const auto place = position_ ? std::optional(to_geodetic(*position_)) : std::nullopt;
+        static_cast<EpochEquations&>(epoch) = maker_.make(transmitters(), observations, settings, place, corrected);
         solve_position(settings, epoch);
         if (!epoch.point) return epoch;
         if (keep_strongest(*epoch.point, settings.most_satellites, epoch.equations, epoch.primaries)) {
@@ -237,14 +224,11 @@ EpochSolution NavigationEngine::State::solve_epoch(const Observations& observati
     return epoch;
 }
 
-bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) const {
+bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) {
     if (parameters_.filter.kind == FilterKind::none) return true;
-    const MotionLimits limits = motion_limits(settings);
     const Geodetic place = to_geodetic(filtered.position);
-    const Eigen::Vector3d v = LocalFrame(place).to_enu(filtered.velocity).vector();
-    return above_sea_level(place.height, reported_undulation(place)).above_sea_level <= limits.height &&
-           std::hypot(v.x(), v.y()) <= limits.horizontal_speed.value() &&
-           std::abs(v.z()) <= limits.vertical_speed.value();
+    const Metres height = above_sea_level(place.height, reported_undulation(place)).above_sea_level;
+    return motion_.passes(motion_limits(settings), time_, height, LocalFrame(place).to_enu(filtered.velocity).vector());
 }
 
 void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings,
@@ -283,6 +267,17 @@ Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& f
     return Metres(std::sqrt(q(2, 2)));
 }
 
+FixType NavigationEngine::State::type_of(const EpochSolution& epoch) const {
+    if (epoch.point->height_held) return FixType::fix_2d;
+    static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
+    const FixType type = differential[static_cast<std::size_t>(differential_kind())];
+    constexpr int enough = 4;  // augmented ranges for a position of their own
+    int augmented = 0;
+    for (std::size_t i = 0; i < epoch.equations.size(); ++i)
+        augmented += epoch.equations[i].augmented && epoch.point->ranges[i].used ? 1 : 0;
+    return type == FixType::fix_3d && augmented >= enough ? FixType::dgnss : type;
+}
+
 void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix) {
     const SinglePoint& point = *epoch.point;
     fix.clock_bias = point.clock();
@@ -312,8 +307,7 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
         return;
     }
     fill_motion(filtered, settings, fix);
-    static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
-    fix.type = point.height_held ? FixType::fix_2d : differential[static_cast<std::size_t>(differential_kind())];
+    fix.type = type_of(epoch);
     const Metres height_deviation = fill_accuracy(epoch, fix);
     if (point.height_held) return;
     const MetresPerSecond rate(std::hypot(fix.velocity.down, fix.speed_accuracy.value()));
@@ -367,7 +361,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
     Fix fix;
     fix.time = time_;
     fix.leap_seconds = knowledge_.leap_seconds.offset(time_);
-    choice_.solved(epoch.point && !epoch.point->height_held);
+    maker_.solved(epoch.point && !epoch.point->height_held);
     if (epoch.point) {
         fill_solved(epoch, settings, fix);
         clock_known_at_ = observations.receive_time;
@@ -383,6 +377,8 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
     const auto place = epoch.time_only ? std::optional(to_ecef(*parameters_.fixed_position)) : position_;
     fix.satellites =
         report_.list({observations, time_, place, epoch.equations, epoch.point ? &epoch.point->ranges : nullptr});
+    for (SatelliteStatus& s : fix.satellites)
+        s.used = s.used && !fix.withheld;
     return fix;
 }
 

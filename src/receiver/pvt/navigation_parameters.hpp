@@ -30,6 +30,8 @@ struct CorrectionParameters {
     /// Of two carriers, where both are tracked, instead of a model. A signal whose group delay is not broadcast counts
     /// as one without, as emulated satellites send it: else no satellite of a receiver of L1 and L5 could be combined.
     bool ionosphere_free = false;
+    /// Or the ionosphere that two carriers show, averaged for so long and weighed against the model; 0: not measured.
+    Seconds ionosphere_memory{0};
 };
 
 /// Variance of a pseudorange: s0² + s1²/sin² e + the code loop's own variance (MODELS.md 7.13), and what the receiver
@@ -64,6 +66,7 @@ struct FilterParameters {
     Seconds velocity_memory{0};       ///< of the reported velocity, in motion
     Seconds velocity_rest_memory{0};  ///< the same at rest
     Seconds coasting{2};              ///< how long a lost fix is carried on, as dead reckoning
+    MetresPerSecond hold_below{0};    ///< below it the position is held, whatever the user has set
     Metres static_hold_radius{10};    ///< out of which a held position is let go
 };
 

@@ -46,24 +46,29 @@ double memory_factor(DynamicModel model) {
 
 }  // namespace
 
-MotionLimits motion_limits(const ReceiverSettings& settings) {
-    return settings.dynamic_limits ? motion_limits(settings.dynamic_model, settings.airborne_ceiling) : MotionLimits{};
-}
-
 Velocity<Ecef> VelocityFilter::update(const FilterParameters& parameters, GpsTime time, const Velocity<Ecef>& measured,
                                       MetresPerSecond deviation, DynamicModel model) {
     const double dt = time_ ? difference(time, *time_).value() : 0;
     time_ = time;
+    const Vector3d before = measured_;
+    measured_ = measured.vector();
     if (!(dt > 0) || dt > longest_gap_s) {
-        velocity_ = measured.vector();
+        velocity_ = measured_;
         return measured;
     }
-    const Vector3d step = measured.vector() - velocity_;
     const double noise = quiet_deviations * deviation.value();
-    const bool rests = step.norm() < noise && velocity_.norm() < noise;
-    const double memory =
-        (rests ? parameters.velocity_rest_memory : parameters.velocity_memory).value() * memory_factor(model);
-    velocity_ += (memory > 0 ? 1 - std::exp(-dt / memory) : 1) * step;
+    const bool rests = (measured_ - velocity_).norm() < noise && velocity_.norm() < noise;
+    const Seconds memory =
+        (rests ? parameters.velocity_rest_memory : parameters.velocity_memory) * memory_factor(model);
+    if (!(memory > Seconds(0))) {
+        velocity_ = measured_;
+        return measured;
+    }
+    const double tau = memory.value(), forgotten = -std::expm1(-dt / tau);
+    if (rests)
+        velocity_ += forgotten * (measured_ - velocity_);
+    else  // the answer to a straight line between the two epochs: late by the memory at every rate
+        velocity_ += forgotten * (before - velocity_) + (1 - forgotten * tau / dt) * (measured_ - before);
     return Velocity<Ecef>(velocity_);
 }
 
@@ -74,6 +79,8 @@ void PositionFilter::start(const PositionInput& input) {
     averaged_ = 1;
     settled_ = false;
     velocity_count_ = 0;
+    lag_.setZero();
+    late_.setZero();
 }
 
 // The way since the last epoch, and how unsure it is by what the next lower order says of it.
@@ -116,24 +123,34 @@ void PositionFilter::remember(const PositionInput& input, double dt) {
     velocity_count_ = std::min(velocity_count_ + 1, 4);
 }
 
-bool PositionFilter::holds(const PositionInput& input, const ReceiverSettings& settings) {
-    const bool slow = settings.static_hold_below > MetresPerSecond(0) && input.velocity &&
-                      input.velocity->vector().norm() < settings.static_hold_below.value();
+bool PositionFilter::holds(const PositionInput& input, const Vector3d& velocity, const ReceiverSettings& settings) {
+    const MetresPerSecond below = std::max(settings.static_hold_below, parameters_.hold_below);
+    const bool slow = input.velocity && velocity.norm() < below.value();
     if (!slow) {
         held_.reset();
         return false;
     }
-    if (held_ && (position_ - *held_).norm() > parameters_.static_hold_radius.value()) held_.reset();
+    const Vector3d position = position_ - lag_;
+    if (held_ && (position - *held_).norm() > parameters_.static_hold_radius.value()) held_.reset();
     // What is held is an average, not the first position that came along.
-    if (!held_ && settled_) held_ = position_;
+    if (!held_ && settled_) held_ = position;
     return held_.has_value();
 }
 
-FilteredPosition PositionFilter::update(const PositionInput& measured, const ReceiverSettings& settings) {
-    PositionInput input = measured;
-    if (measured.velocity)
-        input.velocity = velocity_filter_.update(parameters_, measured.time, *measured.velocity,
-                                                 measured.velocity_deviation, settings.dynamic_model);
+// What the reported velocity leaves out in a manoeuvre is missing in the reported position for a while.
+void PositionFilter::lag(const Vector3d& late, double dt) {
+    constexpr double caught_up_s = 3;  // ours
+    lag_ = std::exp(-dt / caught_up_s) * (lag_ + dt / 2 * (late + late_));
+    late_ = late;
+}
+
+FilteredPosition PositionFilter::update(const PositionInput& input, const ReceiverSettings& settings) {
+    std::optional<Vector3d> velocity;
+    if (input.velocity)
+        velocity =
+            velocity_filter_
+                .update(parameters_, input.time, *input.velocity, input.velocity_deviation, settings.dynamic_model)
+                .vector();
     else
         velocity_filter_.reset();
     const double dt = time_ ? difference(input.time, *time_).value() : 0;
@@ -149,6 +166,7 @@ FilteredPosition PositionFilter::update(const PositionInput& measured, const Rec
             const double share = gain(dt, unsure, settings);
             position_ = predicted + share * innovation;
             averaged_ = 1 / share;
+            lag(input.velocity->vector() - *velocity, dt);
         }
     } else {
         start(input);
@@ -156,11 +174,15 @@ FilteredPosition PositionFilter::update(const PositionInput& measured, const Rec
     if (dt != 0 || !time_) remember(input, dt);
     time_ = input.time;
     interrupted_ = false;
+    reported_velocity_ = velocity.value_or(Vector3d::Zero());
+    return reported(holds(input, reported_velocity_, settings));
+}
 
+FilteredPosition PositionFilter::reported(bool held) const {
     FilteredPosition filtered;
-    filtered.held = holds(input, settings);
-    filtered.position = Position<Ecef>(filtered.held ? *held_ : position_);
-    if (input.velocity && !filtered.held) filtered.velocity = *input.velocity;
+    filtered.held = held;
+    filtered.position = Position<Ecef>(held ? *held_ : position_ - lag_);
+    if (!held) filtered.velocity = Velocity<Ecef>(reported_velocity_);
     return filtered;
 }
 
@@ -172,11 +194,10 @@ std::optional<FilteredPosition> PositionFilter::coast(GpsTime time) {
         held_.reset();
         return std::nullopt;
     }
-    FilteredPosition carried;
-    const Vector3d velocity = velocity_count_ > 0 && !held_ ? velocities_[0] : Vector3d::Zero();
-    carried.position = Position<Ecef>(Vector3d((held_ ? *held_ : position_) + gone.value() * velocity));
+    const Vector3d velocity = velocity_count_ > 0 && !held_ ? reported_velocity_ : Vector3d::Zero();
+    FilteredPosition carried = reported(held_.has_value());
+    carried.position = Position<Ecef>(Vector3d(carried.position.vector() + gone.value() * velocity));
     carried.velocity = Velocity<Ecef>(velocity);
-    carried.held = held_.has_value();
     carried.coasted = gone;
     return carried;
 }

@@ -12,9 +12,6 @@
 
 namespace skyloop::inline receiver {
 
-/// None where the settings have no limits.
-MotionLimits motion_limits(const ReceiverSettings& settings);
-
 /// What one epoch gives the filter.
 struct PositionInput {
     GpsTime time;
@@ -32,8 +29,8 @@ struct FilteredPosition {
     Seconds coasted{0};  ///< since the last solution
 };
 
-/// The reported velocity: an average over `velocity_memory` of what the Dopplers say, and at rest over
-/// `velocity_rest_memory`; a step beyond the noise is followed as in motion.
+/// The reported velocity: what the Dopplers say through a first-order filter of `velocity_memory`, by which it is late
+/// in a manoeuvre, and at rest of `velocity_rest_memory`; a step beyond the noise is followed as in motion.
 class VelocityFilter {
 public:
     /// @param deviation 1 σ, three-dimensional @param model stationary and portable ones remember longer, airborne ones
@@ -44,13 +41,13 @@ public:
 
 private:
     std::optional<GpsTime> time_;
-    Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
+    Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), measured_ = Eigen::Vector3d::Zero();
 };
 
 /// A constant-velocity filter with the gain of its steady state: the position is carried along by the Doppler velocity
 /// and drawn to the solutions of single epochs with a memory of position_memory; while it is young it averages all it
 /// has had. The way between two epochs is the integral of the cubic through the last four velocities; what that leaves
-/// out in a turn opens the gain, so that manoeuvres do not lag.
+/// out in a turn opens the gain, so that it does not lag. The reported position lags as the reported velocity does.
 ///
 /// State: the position, the last velocities, how much it has averaged, and what static hold holds.
 class PositionFilter {
@@ -67,7 +64,9 @@ private:
     double gain(double dt, double unsure, const ReceiverSettings& settings);
     void remember(const PositionInput& input, double dt);
     void start(const PositionInput& input);
-    bool holds(const PositionInput& input, const ReceiverSettings& settings);
+    bool holds(const PositionInput& input, const Eigen::Vector3d& velocity, const ReceiverSettings& settings);
+    void lag(const Eigen::Vector3d& late, double dt);
+    [[nodiscard]] FilteredPosition reported(bool held) const;
 
     FilterParameters parameters_;
     std::optional<GpsTime> time_;
@@ -79,6 +78,9 @@ private:
     bool settled_ = false;                         // half of the memory has been filled
     bool interrupted_ = false;
     std::optional<Eigen::Vector3d> held_;
+    Eigen::Vector3d reported_velocity_ = Eigen::Vector3d::Zero();
+    Eigen::Vector3d lag_ = Eigen::Vector3d::Zero();   // of the reported position, m
+    Eigen::Vector3d late_ = Eigen::Vector3d::Zero();  // what the reported velocity leaves out, m/s
     VelocityFilter velocity_filter_;
 };
 

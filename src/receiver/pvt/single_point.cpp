@@ -6,6 +6,8 @@
 #include <limits>
 
 #include "base/geo/local_frame.hpp"
+#include "detail/dilution.hpp"
+#include "detail/measured_delays.hpp"
 #include "detail/normal_equations.hpp"
 #include "world/gnss/orbit.hpp"
 
@@ -46,8 +48,12 @@ struct RangeWork {
     double weight = 0;    // 1/m²; 0: not used
     std::size_t clock = 0;
     SkyDirection direction;
+    double code_variance = 0;        // of echoes, s0² + s1²/sin² e
     Metres ionosphere, troposphere;  // taken off
+    double ionosphere_variance = 0;  // of what was measured of it
 };
+
+double square(double x) { return x * x; }
 
 // The satellites of one clock.
 struct ClockMean {
@@ -62,17 +68,6 @@ Vector3d up_at(const Geodetic& place) {
     const double cos_lat = std::cos(place.latitude.rad());
     return {cos_lat * std::cos(place.longitude.rad()), cos_lat * std::sin(place.longitude.rad()),
             std::sin(place.latitude.rad())};
-}
-
-Matrix3d enu_rotation(const Geodetic& place) {
-    const double sin_lat = std::sin(place.latitude.rad());
-    const double cos_lat = std::cos(place.latitude.rad());
-    const double sin_lon = std::sin(place.longitude.rad());
-    const double cos_lon = std::cos(place.longitude.rad());
-    Matrix3d r;
-    r << -sin_lon, cos_lon, 0, -sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat, cos_lat * cos_lon, cos_lat * sin_lon,
-        sin_lat;
-    return r;
 }
 
 // One epoch on its way to a solution.
@@ -127,17 +122,19 @@ private:
         return e.selected && !e.excluded && e.transmitter.healthy && std::isfinite(e.pseudorange.value());
     }
     void look();
+    void correct_air();
+    void take_measured_ionosphere();
     [[nodiscard]] ClockMeans means() const;
     [[nodiscard]] double misfit_deviation();
     [[nodiscard]] NormalEquations normal_equations(const ClockMeans& clocks) const;
     std::optional<double> improve();
-    [[nodiscard]] std::optional<Dop> dilution(const Geodetic& place, const SinglePoint& solution) const;
     void tell_ranges(const ClockMeans& clocks, SinglePoint& solution) const;
 
     std::span<const RangeEquation> equations_;
     const SinglePointSetup& setup_;
     std::vector<RangeWork> work_;
     Vector3d position_ = Vector3d::Zero();
+    double ionosphere_doubt_ = 1;
 };
 
 // Where the satellites are from the present position.
@@ -228,7 +225,8 @@ std::optional<double> Adjustment::improve() {
     return step.norm();
 }
 
-void Adjustment::correct(bool mask) {
+// Directions, and what the models say of the air there.
+void Adjustment::correct_air() {
     look();
     const LocalFrame frame(to_geodetic(Position<Ecef>(position_)));
     std::optional<SiteCorrections> site;
@@ -238,63 +236,46 @@ void Adjustment::correct(bool mask) {
         RangeWork& w = work_[i];
         const LookAngles look = frame.look_angles(Position<Ecef>(w.satellite));
         w.direction = {look.azimuth, look.elevation};
-        if (site) {
-            w.troposphere = site->troposphere(look.elevation);
-            if (e.carrier > Hertz(0))
-                w.ionosphere = site->ionosphere(e.satellite.constellation, w.direction, e.carrier);
-        }
+        w.code_variance = square(setup_.weights.floor.value()) +
+                          square(setup_.weights.at_zenith.value() / std::max(std::sin(look.elevation.rad()), 0.02));
+        if (!site) continue;
+        w.troposphere = site->troposphere(look.elevation);
+        if (e.carrier > Hertz(0)) w.ionosphere = site->ionosphere(e.satellite.constellation, w.direction, e.carrier);
+    }
+    const bool measured = std::any_of(equations_.begin(), equations_.end(), [](const auto& e) { return e.ionosphere; });
+    if (site && measured) take_measured_ionosphere();
+}
+
+void Adjustment::take_measured_ionosphere() {
+    std::vector<WeighedDelay> delays;
+    for (std::size_t i = 0; i < work_.size(); ++i)
+        if (work_[i].ionosphere > Metres(0))
+            delays.push_back({work_[i].ionosphere.value(), work_[i].code_variance, equations_[i].ionosphere, 0, i});
+    ionosphere_doubt_ = weigh_measured_delays(delays);
+    for (const WeighedDelay& d : delays) {
+        work_[d.index].ionosphere = Metres(d.delay);
+        work_[d.index].ionosphere_variance = d.variance;
+    }
+}
+
+void Adjustment::correct(bool mask) {
+    correct_air();
+    for (std::size_t i = 0; i < work_.size(); ++i) {
+        const RangeEquation& e = equations_[i];
+        RangeWork& w = work_[i];
         const double delay = (w.troposphere + w.ionosphere).value();
         // The signal left later than the delayed pseudorange says.
         w.transmission = e.transmitter.position.vector() + delay / speed_of_light * e.transmitter.velocity.vector();
         w.observed =
             e.pseudorange.value() - delay +
             speed_of_light * (e.transmitter.clock_bias.value() + e.transmitter.clock_drift * delay / speed_of_light);
-        if (mask) w.weight = believed(e) && look.elevation >= setup_.elevation_mask ? 1 : 0;
+        if (mask) w.weight = believed(e) && w.direction.elevation >= setup_.elevation_mask ? 1 : 0;
         if (w.weight == 0) continue;
-        const double s0 = setup_.weights.floor.value();
-        const double s1 = setup_.weights.at_zenith.value() / std::max(std::sin(look.elevation.rad()), 0.02);
         const double orbits = orbit_deviation(setup_.weights, e.satellite.constellation);
-        const double variance = s0 * s0 + s1 * s1 + orbits * orbits + e.deviation.value() * e.deviation.value();
+        const double variance =
+            w.code_variance + orbits * orbits + e.deviation.value() * e.deviation.value() + w.ionosphere_variance;
         w.weight = 1 / std::max(variance, 1e-6);
     }
-}
-
-std::optional<Dop> Adjustment::dilution(const Geodetic& place, const SinglePoint& solution) const {
-    // The same geometry with unit weights.
-    std::array<Vector3d, clock_count> rows;
-    std::array<int, clock_count> counts{};
-    rows.fill(Vector3d::Zero());
-    for (std::size_t i = 0; i < work_.size(); ++i) {
-        if (!solution.ranges[i].used) continue;
-        rows[work_[i].clock] -= work_[i].line;
-        ++counts[work_[i].clock];
-    }
-    Matrix3d normal = Matrix3d::Zero();
-    for (std::size_t c = 0; c < clock_count; ++c)
-        if (counts[c] > 0) rows[c] /= counts[c];
-    for (std::size_t i = 0; i < work_.size(); ++i) {
-        if (!solution.ranges[i].used) continue;
-        const Vector3d row = -work_[i].line - rows[work_[i].clock];
-        normal.noalias() += row * row.transpose();
-    }
-    const std::optional<Matrix3d> inverse =
-        solution.height_held ? inverse_across(normal, up_at(place)) : inverse_of(normal);
-    if (!inverse) return std::nullopt;
-    const Matrix3d rotation = enu_rotation(place);
-    const Matrix3d q = rotation * *inverse * rotation.transpose();
-    const Vector3d& clock_row = rows[solution.reference];
-    const double clock = 1.0 / counts[solution.reference] + clock_row.dot(*inverse * clock_row);
-    Dop dop;
-    dop.gdop = std::sqrt(q.trace() + clock);
-    dop.pdop = std::sqrt(q.trace());
-    dop.hdop = std::sqrt(q(0, 0) + q(1, 1));
-    dop.vdop = std::sqrt(q(2, 2));
-    dop.tdop = std::sqrt(clock);
-    dop.edop = std::sqrt(q(0, 0));
-    dop.ndop = std::sqrt(q(1, 1));
-    // The satellites tell nothing of a height that was held.
-    if (solution.height_held) dop.gdop = dop.pdop = dop.vdop = std::numeric_limits<double>::quiet_NaN();
-    return dop;
 }
 
 void Adjustment::tell_ranges(const ClockMeans& clocks, SinglePoint& solution) const {
@@ -347,11 +328,12 @@ std::optional<SinglePoint> Adjustment::result(bool position_known) {
     }
     s.clock_variance = 1 / reference.weight + reference.row.dot(s.covariance * reference.row);
     s.position_clock = -s.covariance * reference.row;
+    s.ionosphere_doubt = ionosphere_doubt_;
     s.ranges.reserve(work_.size());
     tell_ranges(clocks, s);
     s.redundancy = s.used - unknowns;
     if (!position_known) {
-        const std::optional<Dop> dop = dilution(to_geodetic(s.position), s);
+        const std::optional<Dop> dop = dilution_of(equations_, s);
         if (!dop) return std::nullopt;
         s.dop = *dop;
     } else {

@@ -18,6 +18,12 @@ inline constexpr std::size_t clock_count = 5;
 /// 0 … clock_count − 1: GPS, Galileo, BeiDou, GLONASS, NavIC.
 std::size_t clock_of(Constellation constellation);
 
+/// A delay that the receiver has measured.
+struct MeasuredDelay {
+    Metres delay;                ///< at the carrier of the range
+    double variance_factor = 0;  ///< its variance, as a multiple of s0² + s1²/sin² e
+};
+
 /// One pseudorange, ready to be solved.
 struct RangeEquation {
     SatelliteId satellite;
@@ -26,7 +32,9 @@ struct RangeEquation {
     Hertz carrier;     ///< 0: the ionosphere is already out
     Metres deviation;  ///< 1 σ of the loops
     bool excluded = false;
-    bool selected = true;  ///< the receiver uses this satellite at all
+    bool selected = true;                       ///< the receiver uses this satellite at all
+    bool augmented = false;                     ///< corrected by SBAS
+    std::optional<MeasuredDelay> ionosphere{};  ///< by two carriers, beside what the model says
 };
 
 /// A height that is known from elsewhere.
@@ -72,6 +80,7 @@ struct SinglePoint {
     Eigen::Vector3d position_clock = Eigen::Vector3d::Zero();  ///< covariance of the two, ECEF, m²
     Dop dop;
     std::vector<RangeOutcome> ranges;  ///< in the order of the equations
+    double ionosphere_doubt = 1;       ///< how wrong the correction may be, against the model's alone
     int used = 0;
     int redundancy = 0;    ///< ranges less unknowns
     double statistic = 0;  ///< Σ residual²/variance

@@ -71,7 +71,7 @@ void read_tracking(TableReader& table, MeasurementParameters& p) {
                    {"of what the receiver says of its ranges, beside the code loop", "multipath.floor_m"});
     table.quantity("cn0_offset_db", p.cn0_offset, {-30, 30}, "of the reported C/N0");
     table.quantity("cn0_resolution_db", p.cn0_resolution, {0, 10}, {"of the reported C/N0; 0: none", "1; survey 0.25"});
-    table.number("slips_per_hour", p.slips_per_hour, {0, 1e6}, {"of each carrier in good conditions", "0; phone 60"});
+    table.number("slips_per_hour", p.slips_per_hour, {0, 1e6}, {"of each carrier in good conditions", "0; phone 1500"});
 }
 
 void read_acquisition(TableReader& table, AcquisitionParameters& p) {
@@ -110,6 +110,9 @@ void read_filter(TableReader& table, FilterParameters& p) {
     table.quantity("velocity_memory_s", p.velocity_memory, {0, 100}, "of the reported velocity, in motion; 0: none");
     table.quantity("velocity_rest_memory_s", p.velocity_rest_memory, {0, 1e5},
                    {"of the reported velocity, at rest; 0: none", "0; phone 5"});
+    table.quantity("hold_below_mps", p.hold_below, {0, 100},
+                   {"speed below which the position is held; that of the receiver's own settings where it is more",
+                    "0; phone 0.5"});
     table.quantity("code_smoothing_s", p.code_smoothing, {0, 1e5},
                    "of the code by the carrier, before the solution; 0: none");
     table.quantity("coasting_s", p.coasting, {0, 3600}, "how long a lost fix is carried on, as dead reckoning");
@@ -132,6 +135,9 @@ void read_corrections(TableReader& table, ModernSettings& settings) {
     table.boolean("ionosphere_free", settings.navigation.corrections.ionosphere_free,
                   "combines both signals of a satellite where two are tracked, and solves with these satellites alone "
                   "where they suffice");
+    table.quantity("ionosphere_memory_s", settings.navigation.corrections.ionosphere_memory, {0, 1e5},
+                   "over which the ionosphere that both signals of a satellite show is averaged, to be weighed against "
+                   "the model; 0: the model alone");
     if (!table.recording() && table.has("ionosphere_free"))
         settings.ionosphere_free_told_at = table.told_at("ionosphere_free");
 }

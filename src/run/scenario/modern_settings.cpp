@@ -58,7 +58,9 @@ void make_phone(ModernSettings& s) {
     set_multipath(s, {Metres(7), Metres(4), Seconds(0.3)});
     s.measurement.doppler_window = Seconds(0.15);
     s.measurement.multipath_model.phase_ratio = 0.0002;
-    s.measurement.slips_per_hour = 60;
+    // Its tracking sleeps for most of each second: a third of the epochs of the phase begin anew.
+    s.measurement.slips_per_hour = 1500;
+    s.navigation.filter.hold_below = MetresPerSecond(0.5);
     s.navigation.accuracy.position_scale = 0.45;
     s.navigation.filter.velocity_rest_memory = Seconds(5);
     s.navigation.use.within = Decibels(12);

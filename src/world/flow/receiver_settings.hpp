@@ -24,20 +24,31 @@ struct MotionLimits {
     Metres height{any};  ///< above mean sea level
     MetresPerSecond horizontal_speed{any};
     MetresPerSecond vertical_speed{any};
+    double acceleration = any;  ///< m/s²
 };
 
 /// u-blox 8 / u-blox M8 receiver description (UBX-13003221), table of the dynamic platform models. Of the airborne
-/// models the ceiling alone: their speeds are not looked at.
+/// models the ceiling and the acceleration that they are named for: at full throttle of a quadcopter a receiver uses no
+/// satellites with the model of 1 g, and goes on with that of 4 g (Betaflight issue 14330). Their speeds are not looked
+/// at.
 /// @param airborne_ceiling 50 km up to generation 8, 80 km from M9 on
 constexpr MotionLimits motion_limits(DynamicModel model, Metres airborne_ceiling) {
-    if (model >= DynamicModel::airborne_1g) return {.height = airborne_ceiling};
+    if (model >= DynamicModel::airborne_1g) {
+        constexpr double g = 9.80665;
+        constexpr std::array accelerations{1 * g, 2 * g, 4 * g};
+        return {
+            .height = airborne_ceiling,
+            .acceleration =
+                accelerations[static_cast<std::size_t>(model) - static_cast<std::size_t>(DynamicModel::airborne_1g)]};
+    }
     struct Row {
         double height, horizontal_speed, vertical_speed;
     };
     constexpr std::array<Row, 5> below_airborne{
         {{12'000, 310, 50}, {9'000, 10, 6}, {9'000, 30, 20}, {6'000, 100, 15}, {500, 25, 5}}};
     const Row& row = below_airborne[static_cast<std::size_t>(model)];
-    return {Metres(row.height), MetresPerSecond(row.horizontal_speed), MetresPerSecond(row.vertical_speed)};
+    return {Metres(row.height), MetresPerSecond(row.horizontal_speed), MetresPerSecond(row.vertical_speed),
+            MotionLimits::any};
 }
 
 /// What a receiver still knows when it starts.
@@ -72,6 +83,7 @@ struct ReceiverSettings {
     std::set<SystemSignal> signals{};  ///< that are tracked; empty: the first signal of every system
     std::uint64_t sbas_scan_mask = 0;  ///< of in_sbas_scan_mask()
     bool sbas_ranging = true;          ///< SBAS satellites are used as those of other systems
+    bool sbas_corrections = true;      ///< what SBAS satellites say of others is used
     bool beidou_b1c = false;           ///< BeiDou's first signal is B1C, of BeiDou-3's MEO and IGSO satellites alone
     std::size_t most_satellites = 0;   ///< that a solution takes, the strongest; 0: all
     Angle elevation_mask = Angle::degrees(5);

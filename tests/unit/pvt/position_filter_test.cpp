@@ -122,6 +122,39 @@ TEST(PositionFilter, DoesNotLagInTurns) {
     EXPECT_LT(worst_lag(10), 0.05);
 }
 
+// A vehicle that begins to brake at 2 m/s² at 60 m/s.
+TEST(PositionFilter, ReportsAManoeuvreLateByTheMemoryOfTheVelocityAtEveryRate) {
+    for (const double rate_hz : {1.0, 5.0, 25.0}) {
+        FilterParameters parameters;
+        parameters.velocity_memory = Seconds(0.1);
+        PositionFilter filter(parameters);
+        FilteredPosition out;
+        Vector3d truth, velocity;
+        for (int epoch = 0; epoch <= static_cast<int>(30 * rate_hz); ++epoch) {
+            const double t = epoch / rate_hz, braked = std::max(0.0, t - 20);
+            velocity = Vector3d(60 - 2 * braked, 0, 0);
+            truth = home + Vector3d(60 * t - braked * braked, 0, 0);
+            out = filter.update(input_at(t, truth, velocity), {});
+            if (t == 20) {
+                EXPECT_LT((out.velocity.vector() - velocity).norm(), 1e-6);
+                EXPECT_LT((out.position.vector() - truth).norm(), 0.01);
+            }
+        }
+        EXPECT_NEAR(out.velocity.vector().x() - velocity.x(), 0.2, 0.01) << rate_hz;
+        EXPECT_NEAR(out.position.vector().x() - truth.x(), 0.2 * 3, 0.15) << rate_hz;
+    }
+}
+
+TEST(PositionFilter, HoldsBelowASpeedOfItsOwn) {
+    FilterParameters parameters;
+    parameters.hold_below = MetresPerSecond(0.5);
+    parameters.position_memory = Seconds(1);
+    PositionFilter filter(parameters);
+    for (int s = 0; s < 10; ++s)
+        EXPECT_EQ(filter.update(input_at(s, home, Vector3d(0.4, 0, 0)), {}).held, s > 0);
+    EXPECT_FALSE(filter.update(input_at(10, home, Vector3d(0.6, 0, 0)), {}).held);
+}
+
 TEST(PositionFilter, FollowsAJumpAtOnce) {
     PositionFilter filter({});
     for (int s = 0; s < 100; ++s)
@@ -169,28 +202,6 @@ TEST(PositionFilter, CoastsForAsLongAsItMay) {
     EXPECT_LT((carried->position.vector() - home - 12 * velocity).norm(), 1e-6);
     EXPECT_EQ(carried->coasted, Seconds(2));
     EXPECT_FALSE(filter.coast(input_at(12.5, home, velocity).time));
-}
-
-TEST(MotionLimits, GrowWithTheModel) {
-    const auto limits = [](DynamicModel model) { return motion_limits({.dynamic_model = model}); };
-    EXPECT_EQ(limits(DynamicModel::sea).height, Metres(500));
-    EXPECT_EQ(limits(DynamicModel::portable).vertical_speed, MetresPerSecond(50));
-}
-
-// RECEIVER.md 4.8, "check: alt only".
-TEST(MotionLimits, OfAirborneModelsAreTheCeilingAlone) {
-    for (const auto model : {DynamicModel::airborne_1g, DynamicModel::airborne_2g, DynamicModel::airborne_4g}) {
-        const MotionLimits limits = motion_limits({.dynamic_model = model, .airborne_ceiling = Metres(50'000)});
-        EXPECT_EQ(limits.height, Metres(50'000));
-        EXPECT_GT(limits.vertical_speed, MetresPerSecond(20'000));
-        EXPECT_GT(limits.horizontal_speed, MetresPerSecond(500));
-    }
-}
-
-TEST(MotionLimits, AreThoseOfBoardsThatHaveDynamicModels) {
-    const MotionLimits limits = motion_limits({.dynamic_model = DynamicModel::sea, .dynamic_limits = false});
-    EXPECT_GT(limits.height, Metres(100'000));
-    EXPECT_GT(limits.vertical_speed, MetresPerSecond(1000));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "firmware/messages/make_message.hpp"
 #include "receiver/protocol/ubx_satellites.hpp"
 #include "receiver/protocol/ubx_services.hpp"
+#include "world/gnss/sbas_service.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -105,16 +106,6 @@ NavOrb orbits(const ReportContext& context) {
     return m;
 }
 
-// Whose satellite a PRN is (ICAO SARPs, SBAS providers of 2024): 0 WAAS, 1 EGNOS, 2 MSAS, 3 GAGAN, −1 another.
-std::int8_t sbas_system(std::uint8_t prn) {
-    constexpr std::pair<std::uint8_t, std::int8_t> systems[] = {{131, 0}, {133, 0}, {135, 0}, {138, 0}, {120, 1},
-                                                                {121, 1}, {123, 1}, {124, 1}, {126, 1}, {136, 1},
-                                                                {129, 2}, {137, 2}, {127, 3}, {128, 3}, {132, 3}};
-    for (const auto& [number, system] : systems)
-        if (number == prn) return system;
-    return -1;
-}
-
 // With corrections of SBAS in use, the strongest of its satellites is the one that they come from.
 NavSbas augmentation(const ReportContext& context) {
     const NavigationState& state = context.state;
@@ -128,7 +119,7 @@ NavSbas augmentation(const ReportContext& context) {
     if (source == nullptr) return m;
     m.geo = sv_id(source->id);
     m.mode = 1;
-    m.sys = sbas_system(m.geo);
+    if (const auto system = sbas_system(m.geo)) m.sys = static_cast<std::int8_t>(*system);
     const bool corrects = corrections_in_use(state) == CorrectionOrigin::sbas;
     m.service = corrects ? 3 : 1;
     for (const SatelliteStatus& s : satellites) {
