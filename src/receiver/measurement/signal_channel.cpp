@@ -33,6 +33,12 @@ MetresPerSecond added_rate(const Arrival& arrival) {
            arrival.false_range_rate - arrival.false_iono_rate;
 }
 
+// SBAS corrects GPS alone today (EGNOS Open Service SDD 2.3, WAAS Performance Standard).
+std::optional<Metres> augmentation_of(const Arrival& arrival, Metres iono) {
+    if (arrival.id.constellation != Constellation::gps) return std::nullopt;
+    return arrival.signal_in_space_error + iono;
+}
+
 DbHz reported_cn0(DbHz cn0, Decibels resolution) {
     // Of RTCM's six bits (10403.3, DF403), where receivers' own estimates end, too; what has gone all of a sudden is
     // tracked for a moment yet.
@@ -230,9 +236,7 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.called_unhealthy = arrival.called_unhealthy;
     if (arrival.echoes_known) result.correlation_distortion = std::abs(echoes_.distortion);
     if (epoch.corrected) result.correction = correction(input, Metres(iono));
-    // SBAS corrects GPS alone today (EGNOS Open Service SDD 2.3, WAAS Performance Standard).
-    if (satellite_.constellation == Constellation::gps)
-        result.augmentation = arrival.signal_in_space_error + Metres(iono);
+    result.augmentation = augmentation_of(arrival, Metres(iono));
     if (!lock_.phase_locked()) return result;
     const double carrier_path = path - iono + terms_.phase_multipath.value() + terms_.phase_noise.value();
     result.carrier_phase = carrier_path / wavelength + count_.cycles();

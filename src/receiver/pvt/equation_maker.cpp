@@ -17,19 +17,18 @@ bool EquationMaker::takes(const Observation& observation, const ReceiverSettings
 }
 
 void EquationMaker::add(TransmitterSource& transmitters, const Observation& first,
-                        std::span<const Observation* const> others, GpsTime receive_time, bool corrected,
-                        EpochEquations& epoch) {
-    const bool combined = parameters_.corrections.ionosphere_free && !corrected;
+                        std::span<const Observation* const> others, GpsTime receive_time, EpochEquations& epoch) {
+    const bool combined = parameters_.corrections.ionosphere_free && !corrected_;
     const auto none = std::span<const Observation* const>();
     auto made = range_equation(transmitters, first, combined ? others : none, receive_time);
     if (!made) return;
     made->selected = choice_.takes(first);
-    const bool augmented = !corrected && parameters_.differential.kind == DifferentialKind::none;
+    const bool augmented = !corrected_ && parameters_.differential.kind == DifferentialKind::none;
     if (augmented && augmentation_.serves() && first.augmentation) {
         made->pseudorange -= (1 - parameters_.differential.sbas_left) * *first.augmentation;
         made->carrier = Hertz(0);
         made->augmented = true;
-    } else if (!corrected && !combined) {
+    } else if (!corrected_ && !combined) {
         made->ionosphere = ionosphere_.measure(transmitters, made->transmitter, first, others, receive_time);
     }
     epoch.equations.push_back(*made);
@@ -41,6 +40,7 @@ EpochEquations EquationMaker::make(TransmitterSource& transmitters, const Observ
                                    bool corrected) {
     const std::vector<Observation>& all = observations.signals;
     EpochEquations epoch;
+    corrected_ = corrected;
     choice_.begin(observations);
     augmentation_.hear(observations, settings, place);
     for (std::size_t i = 0; i < all.size();) {
@@ -55,7 +55,7 @@ EpochEquations EquationMaker::make(TransmitterSource& transmitters, const Observ
             if (other != nullptr && others.size() < most_signals) others.push_back(other);
         }
         if (first == nullptr || (id.constellation == Constellation::sbas && !settings.sbas_ranging)) continue;
-        add(transmitters, *first, others, observations.receive_time, corrected, epoch);
+        add(transmitters, *first, others, observations.receive_time, epoch);
     }
     return epoch;
 }

@@ -38,12 +38,13 @@ public:
 private:
     [[nodiscard]] bool takes(const Observation& observation, const ReceiverSettings& settings) const;
     void add(TransmitterSource& transmitters, const Observation& first, std::span<const Observation* const> others,
-             GpsTime receive_time, bool corrected, EpochEquations& epoch);
+             GpsTime receive_time, EpochEquations& epoch);
 
     NavigationParameters parameters_;
     SatelliteChoice choice_;
     TwoBandIonosphere ionosphere_;
     Augmentation augmentation_;
+    bool corrected_ = false;  // in this epoch
 };
 
 }  // namespace skyloop::inline receiver
