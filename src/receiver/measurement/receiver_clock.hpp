@@ -3,6 +3,7 @@
 
 #include "base/core/random.hpp"
 #include "base/core/units.hpp"
+#include "base/time/gps_time.hpp"
 
 namespace skyloop::inline receiver {
 
@@ -48,10 +49,11 @@ struct ReceiverClockParameters {
     Seconds steering_time{10};  ///< of the critically damped loop of continuous steering
 };
 
-/// A seeded two-state clock at a temperature.
+/// A seeded two-state clock at a temperature. It is drawn each tenth of a second since its start, with a cubic between,
+/// so that its path does not depend on how often it is looked at.
 ///
-/// State: bias and drift against the time of the satellites, the oscillator's temperature, how often it has jumped, its
-/// own stream of random numbers.
+/// State: bias, drift and temperature at both ends of the present tenth, how often it has jumped, its own stream of
+/// random numbers.
 class ReceiverClock {
 public:
     /// @param stream of this clock alone
@@ -67,15 +69,23 @@ public:
     void advance(Seconds dt);
 
 private:
-    void add_noise(Seconds dt);
-    void pull(Seconds dt);
+    struct State {
+        double bias = 0, drift = 0;  // m, m/s
+        Kelvin temperature;
+    };
+    State after(State state, Seconds dt);
+    void add_noise(State& state, Seconds dt);
+    void pull(State& state, Seconds dt) const;
+    void look();
     void jump();
 
     ReceiverClockParameters parameters_;
     RandomStream stream_;
+    State from_, to_;
+    std::int64_t tenth_ = 0;  // from_ is its start
+    Nanoseconds elapsed_{0};
     Metres bias_;
     MetresPerSecond drift_;
-    Kelvin temperature_;
     int jumped_milliseconds_ = 0;
 };
 

@@ -44,6 +44,29 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
     return expected;
 }
 
+double NoiseScale::of(const SinglePoint& solution, bool consistent, GpsTime time) {
+    constexpr double averaged_over_s = 20, longest_pause_s = 10, believed_after_s = 10, least = 0.3, most = 10;
+    const double seen =
+        solution.redundancy > 0 ? std::clamp(std::sqrt(solution.statistic / solution.redundancy), least, most) : 1;
+    const double dt = since_ ? difference(time, last_).value() : 0;
+    if (!since_ || dt < 0 || dt > longest_pause_s) {
+        since_ = time;
+        average_ = seen;
+    } else {
+        average_ += (1 - std::exp(-dt / averaged_over_s)) * (seen - average_);
+    }
+    last_ = time;
+    const double doubt = std::sqrt(1 + 3 * std::exp(-difference(time, *since_).value() / believed_after_s));
+    return doubt * (consistent ? average_ : std::max(average_, seen));
+}
+
+SinglePoint with_noise(SinglePoint solution, double scale) {
+    solution.covariance *= scale * scale;
+    solution.clock_variance *= scale * scale;
+    solution.position_clock *= scale * scale;
+    return solution;
+}
+
 bool leaves_delays(const NavigationParameters& parameters) {
     return parameters.differential.kind == DifferentialKind::sbas || parameters.accuracy.whole_ionosphere ||
            parameters.accuracy.whole_troposphere;

@@ -52,6 +52,26 @@ bool leaves_delays(const NavigationParameters& parameters);
 ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
                                   const SiteCorrections& air);
 
+/// By how much the noise of a solution is larger than its weights expect, as its residuals say, over some seconds. At
+/// first a receiver believes itself half as much, until its filter has averaged: ours, after a u-blox that began with
+/// 6.5 m and told 2.9 m after 10 s and 1.7 m after 30 s (docs/fidelity.md, Besançon).
+///
+/// State: since when there are solutions, and the average.
+class NoiseScale {
+public:
+    /// @param consistent the residuals' test was passed: else they count at once
+    double of(const SinglePoint& solution, bool consistent, GpsTime time);
+    void reset() { since_.reset(); }
+
+private:
+    std::optional<GpsTime> since_;
+    GpsTime last_;
+    double average_ = 1;
+};
+
+/// The same solution with so much more noise.
+SinglePoint with_noise(SinglePoint solution, double scale);
+
 /// How these errors go together at the place of the solution, and those of its velocity, if it has one.
 ErrorCorrelation error_correlation(const ExpectedError& expected, const std::optional<SinglePointVelocity>& velocity,
                                    const Geodetic& place);

@@ -77,7 +77,7 @@ private:
     [[nodiscard]] FixType type_of(const EpochSolution& epoch) const;
     void fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix);
     void fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings, Fix& fix);
-    Metres fill_accuracy(const EpochSolution& epoch, Fix& fix) const;
+    Metres fill_accuracy(const EpochSolution& epoch, Fix& fix);
     void fill_coasting(const ReceiverSettings& settings, Fix& fix);
     void begin_regime(CorrectionState state);
     Observations prepared(const Observations& observations, const ReceiverSettings& settings);
@@ -99,6 +99,7 @@ private:
     SatelliteReport report_;
     EquationMaker maker_;
     MotionCheck motion_;
+    NoiseScale noise_;
 
     std::optional<int> restarts_;
     GpsTime time_;                           // true, as well as the receiver can tell
@@ -123,6 +124,7 @@ void NavigationEngine::State::begin(const ReceiverSettings& settings, GpsTime ti
     report_.reset();
     maker_.reset();
     motion_.reset();
+    noise_.reset();
     clock_known_at_.reset();
     if (settings.start != StartKind::cold) return;
     position_.reset();
@@ -242,23 +244,20 @@ void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, cons
     fix.course = course_;
 }
 
-// Returns 1 σ of the height, as no scale has touched it.
-Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix) const {
-    const SinglePoint& point = *epoch.point;
-    double scale = parameters_.accuracy.position_scale;
-    // Residuals that noise does not explain make the formal covariance a lie.
-    if (!epoch.consistent && point.redundancy > 0)
-        scale *= std::sqrt(std::max(1.0, point.statistic / point.redundancy));
+// Returns 1 σ of the height, whatever the receiver reports.
+Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix) {
+    const double scale = parameters_.accuracy.position_scale * noise_.of(*epoch.point, epoch.consistent, time_);
+    const SinglePoint point = with_noise(*epoch.point, scale);
     const bool left = corrected_ == CorrectionState::none && leaves_delays(parameters_);
     const bool augmented = left && differential_kind() == DifferentialKind::sbas;
     const DifferentialKind kind = augmented ? DifferentialKind::none : differential_kind();
     const ExpectedError expected =
         left ? expected_error_left(point, parameters_, air_.at(to_geodetic(point.position), time_))
              : expected_error(point, parameters_.accuracy);
-    fix.time_accuracy = Metres(scale * std::sqrt(expected.clock));
+    fix.time_accuracy = Metres(std::sqrt(expected.clock));
     if (epoch.time_only) return Metres(0);
     const Eigen::Matrix3d q = in_enu(LocalFrame(fix.position), expected.position);
-    const ToldAccuracy told = told_accuracy(scale * scale * q, fix.dop, kind, parameters_.differential);
+    const ToldAccuracy told = told_accuracy(q, fix.dop, kind, parameters_.differential);
     fix.horizontal_accuracy = told.horizontal;
     fix.vertical_accuracy = told.vertical;
     fix.speed_accuracy = told_speed_accuracy(epoch.velocity, parameters_.accuracy);

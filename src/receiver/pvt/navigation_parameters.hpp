@@ -77,7 +77,8 @@ struct IntegrityParameters {
     int most_exclusions = 3;
 };
 
-/// Reported accuracies: what noise by the weights and wrong corrections do to the solution, times the scales.
+/// Reported accuracies: what noise by weights and residuals, times the scales, and wrong corrections do to the
+/// solution.
 struct AccuracyParameters {
     double position_scale = 1;
     double velocity_scale = 1;

@@ -52,20 +52,21 @@ Velocity<Ecef> VelocityFilter::update(const FilterParameters& parameters, GpsTim
     time_ = time;
     const Vector3d before = measured_;
     measured_ = measured.vector();
+    rests_ = false;
     if (!(dt > 0) || dt > longest_gap_s) {
         velocity_ = measured_;
         return measured;
     }
     const double noise = quiet_deviations * deviation.value();
-    const bool rests = (measured_ - velocity_).norm() < noise && velocity_.norm() < noise;
+    rests_ = (measured_ - velocity_).norm() < noise && velocity_.norm() < noise;
     const Seconds memory =
-        (rests ? parameters.velocity_rest_memory : parameters.velocity_memory) * memory_factor(model);
+        (rests_ ? parameters.velocity_rest_memory : parameters.velocity_memory) * memory_factor(model);
     if (!(memory > Seconds(0))) {
         velocity_ = measured_;
         return measured;
     }
     const double tau = memory.value(), forgotten = -std::expm1(-dt / tau);
-    if (rests)
+    if (rests_)
         velocity_ += forgotten * (measured_ - velocity_);
     else  // the answer to a straight line between the two epochs: late by the memory at every rate
         velocity_ += forgotten * (before - velocity_) + (1 - forgotten * tau / dt) * (measured_ - before);

@@ -37,10 +37,13 @@ public:
     /// less
     Velocity<Ecef> update(const FilterParameters& parameters, GpsTime time, const Velocity<Ecef>& measured,
                           MetresPerSecond deviation, DynamicModel model);
-    void reset() { time_.reset(); }
+    /// Whether the last one was taken for one of a receiver at rest.
+    [[nodiscard]] bool rests() const { return rests_; }
+    void reset() { *this = VelocityFilter(); }
 
 private:
     std::optional<GpsTime> time_;
+    bool rests_ = false;
     Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), measured_ = Eigen::Vector3d::Zero();
 };
 

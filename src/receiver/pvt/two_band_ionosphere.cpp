@@ -46,11 +46,12 @@ std::optional<MeasuredDelay> TwoBandIonosphere::measure(TransmitterSource& trans
     const double code = per_code * ((**second).pseudorange->value() - first.pseudorange->value() +
                                     speed_of_light * (other->clock_bias - sent.clock_bias).value());
     const std::optional<double> phase = phase_difference(first, **second);
-    const auto [at, is_new] = satellites_.try_emplace(first.satellite, Average{receive_time, code, phase, 0});
-    Average& known = at->second;
+    Average& known = satellites_.try_emplace(first.satellite, Average{receive_time, code, phase, 0}).first->second;
     const double gap = difference(receive_time, known.time).value();
-    if (!is_new && (gap < 0 || gap > longest_absence_s)) known = {receive_time, code, phase, 0};
-    if (gap > 0) average(known, code, phase, per_code, receive_time);
+    if (gap < 0 || gap > longest_absence_s)
+        known = {receive_time, code, phase, 0};
+    else if (gap > 0)
+        average(known, code, phase, per_code, receive_time);
     return MeasuredDelay{Metres(known.delay), 2 * per_code * per_code * alike_s / (alike_s + known.averaged)};
 }
 

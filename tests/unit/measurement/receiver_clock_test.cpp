@@ -148,6 +148,19 @@ TEST(ReceiverClock, ContinuousSteeringTakesAnInitialBiasOut) {
     EXPECT_NEAR(clock.drift().value(), -200 * std::exp(-2.0), 1e-9);
 }
 
+TEST(ReceiverClock, RunsAlikeHoweverOftenItIsLookedAt) {
+    ReceiverClock seldom({{}, {}, MetresPerSecond(150), ClockSteering::millisecond_jumps}, RandomStream(5, "clock"));
+    ReceiverClock often = seldom;
+    for (int second = 0; second < 3000; ++second) {
+        seldom.advance(Seconds(1));
+        for (int i = 0; i < 25; ++i)
+            often.advance(Seconds(0.04));
+        ASSERT_NEAR(seldom.bias().value(), often.bias().value(), 1e-6) << second;
+        ASSERT_NEAR(seldom.drift().value(), often.drift().value(), 1e-9) << second;
+    }
+    EXPECT_NE(seldom.jumped_milliseconds(), 0);
+}
+
 TEST(ReceiverClock, TheSameSeedGivesTheSameClock) {
     ReceiverClock a({}, RandomStream(3, "clock")), b({}, RandomStream(3, "clock")), c({}, RandomStream(4, "clock"));
     for (ReceiverClock* clock : {&a, &b, &c})

@@ -91,6 +91,17 @@ TEST(TwoBandIonosphere, GrowsExactAndStaysQuietAsItAverages) {
     EXPECT_LT(averaged, 0.4 * single) << "against the combination of each epoch";
 }
 
+TEST(TwoBandIonosphere, BeginsAnewAfterALongAbsence) {
+    const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
+    const TrueReceiver receiver = receiver_at(antenna, sample_time);
+    std::mt19937 dice(4);
+    NavigationEngine engine(with_memory(Seconds(600)), {&sky});
+    for (const double second : {0.0, 1.0, 100.0, 101.0}) {
+        const TrueReceiver now = later(receiver, second);
+        EXPECT_LT(error_of(engine.solve(measured_through(sky, now, 0, dice), {}), now), 2) << second;
+    }
+}
+
 TEST(TwoBandIonosphere, ServesTheSatellitesWithOneSignalToo) {
     const SyntheticSky sky = test::synthetic_sky(sample_time, test::four_systems);
     const TrueReceiver receiver = receiver_at(antenna, sample_time);
