@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
-from validation import bands, figures, geodesy  # noqa: E402
+from validation import bands, behaviours_starts, behaviours_turns, figures, geodesy, row_bands  # noqa: E402
 
 
 def noise(count, sigma, seed=1):
@@ -87,6 +87,45 @@ class Bands(unittest.TestCase):
     def test_none_around_nothing(self):
         self.assertIsNone(bands.of_record("speed at rest p50", [0]))
         self.assertIsNone(bands.of_record("std E", []))
+
+
+class Behaviours(unittest.TestCase):
+    def row(self, band, *values):
+        return row_bands.Row("a row", band, [list(numbers) for numbers in values])
+
+    def test_the_medians_of_the_seeds_count(self):
+        self.assertTrue(self.row(row_bands.within(2, 12, "mm/s"), [1], [4], [50]).inside)
+        self.assertFalse(self.row(row_bands.within(2, 12, "mm/s"), [1], [1.5], [4]).inside)
+        self.assertEqual(self.row(row_bands.reported("s"), [1, 2], [3, 5], [2, 9]).text, "2 / 5 s")
+
+    def test_what_was_not_measured_is_not_inside(self):
+        for band in (row_bands.never("s"), row_bands.growing("s"), row_bands.at_most(3, "s")):
+            self.assertFalse(self.row(band).inside)
+            self.assertFalse(self.row(band, [float("nan")]).inside)
+
+    def test_never_and_growing(self):
+        self.assertTrue(self.row(row_bands.never("s"), [row_bands.NEVER]).inside)
+        self.assertFalse(self.row(row_bands.never("s"), [200.0]).inside)
+        self.assertTrue(self.row(row_bands.growing("s", 0.2), [2, 1.8, 5]).inside)
+        self.assertFalse(self.row(row_bands.growing("s"), [2, 5, row_bands.NEVER]).inside)
+        self.assertFalse(self.row(row_bands.growing("s"), [2, 1.8, 5]).inside)
+
+    def test_a_known_lag(self):
+        times = [index * 0.2 for index in range(600)]
+        way = behaviours_turns.Curve(times, [[40 * math.sin(0.4 * t), 30 * math.cos(0.5 * t)] for t in times])
+        speed = behaviours_turns.Curve(times[2:-2], behaviours_turns.rates(way.step, way.values))
+        late = [(t, [16 * math.cos(0.4 * (t - 0.09)), -15 * math.sin(0.5 * (t - 0.09))]) for t in times[10:-10]]
+        self.assertAlmostEqual(behaviours_turns.lag(speed, late), 90, delta=0.5)
+        late = [(t, [40 * math.sin(0.4 * (t + 0.05)) + 3, 30 * math.cos(0.5 * (t + 0.05)) - 2]) for t in times[10:-10]]
+        self.assertAlmostEqual(behaviours_turns.lag(way, late), -50, delta=0.5)
+
+    def test_a_return(self):
+        def told(time, fixed, sats):
+            return behaviours_starts.runs.Told(time, fixed, False, sats, (), (), 1, 1, 1)
+
+        every = [told(time, not 20 <= time < 33, min(20, 6 + 4 * max(time - 33, 0)) if time >= 33 else 20)
+                 for time in range(60)]
+        self.assertEqual(behaviours_starts.return_times(every, 10, 30), (3, 6))
 
 
 if __name__ == "__main__":

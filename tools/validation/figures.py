@@ -166,20 +166,25 @@ def of_code(satellites):
     return figures
 
 
-def of_doppler(satellites):
-    """Doppler noise by tens of degrees, mm/s; satellites: {name: rows of (second, carrier m, slipped, range rate m/s,
-    elevation)}. The mean of two Dopplers minus the carrier's change, less the median of the epoch."""
+def doppler_residuals(satellites):
+    """(elevation, m/s) of each satellite and epoch; satellites: {name: rows of (second, carrier m, slipped, range rate
+    m/s, elevation)}. The mean of two Dopplers minus the carrier's change, less the median of the epoch."""
     epochs = {}
     for rows in satellites.values():
         for before, after in zip(rows, rows[1:]):
             if after[0] == before[0] + 1 and not after[2]:
                 value = (before[3] + after[3]) / 2 - (after[1] - before[1])
                 epochs.setdefault(after[0], []).append((after[4], value))
-    bins = {}
     for values in epochs.values():
         if len(values) >= 4:
             middle = statistics.median(value for _, value in values)
-            for elevation, value in values:
-                bins.setdefault(tens(elevation), []).append(value - middle)
+            yield from ((elevation, value - middle) for elevation, value in values)
+
+
+def of_doppler(satellites):
+    """Doppler noise by tens of degrees, mm/s; satellites as above."""
+    bins = {}
+    for elevation, value in doppler_residuals(satellites):
+        bins.setdefault(tens(elevation), []).append(value)
     return {f"Doppler noise mm/s el {low}": 1000 * robust_sigma(values) for low, values in sorted(bins.items())
             if len(values) >= LEAST_OF_BIN}

@@ -8,7 +8,7 @@ import tempfile
 from . import figures, geodesy, records, simulation, sites
 
 WIDTH, HEIGHT, GAP, EDGE, TOP = 420, 220, 60, 50, 46
-COLOURS = ("#0072b2", "#d55e00", "#009e73")
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")
 MOST_POINTS = 1300
 SATELLITE = "G19"  # of the riverside: at 30°, the whole record
 
@@ -75,9 +75,17 @@ def ticks(low, high):
     return [index * step for index in range(first, math.floor(high / step) + 1)]
 
 
-def panel(series, title, left, low, high):
-    """One diagram: its frame, scale and lines."""
+def limits(lines):
+    """From the least to the greatest value and a little beyond."""
+    values = [value for line in lines for value in line if value is not None]
+    margin = (max(values) - min(values)) * 0.03 or 1
+    return min(values) - margin, max(values) + margin
+
+
+def panel(series, title, left, scale, seconds=None):
+    """One diagram: its frame, scale from low to high and lines, a value each second where it is not told how long."""
     longest = max(len(values) for values in series.values())
+    low, high = scale
 
     def across(index):
         return left + WIDTH * index / max(longest - 1, 1)
@@ -87,7 +95,7 @@ def panel(series, title, left, low, high):
 
     parts = [f'<text x="{left}" y="{TOP - 8}" font-weight="bold">{title}</text>',
              f'<rect x="{left}" y="{TOP}" width="{WIDTH}" height="{HEIGHT}" fill="none" stroke="#888"/>',
-             f'<text x="{left + WIDTH}" y="{TOP + HEIGHT + 16}" text-anchor="end">{longest} s</text>']
+             f'<text x="{left + WIDTH}" y="{TOP + HEIGHT + 16}" text-anchor="end">{seconds or longest} s</text>']
     for value in ticks(low, high):
         parts.append(f'<path d="M{left} {down(value):.1f}h{WIDTH}" stroke="#ddd"/>'
                      f'<text x="{left - 5}" y="{down(value) + 4:.1f}" text-anchor="end">{value:g}</text>')
@@ -102,21 +110,30 @@ def panel(series, title, left, low, high):
     return "\n".join(parts)
 
 
-def svg(title, unit, real, simulated):
-    """Both with one scale."""
-    values = [value for series in (real, simulated) for line in series.values() for value in line if value is not None]
-    margin = (max(values) - min(values)) * 0.03 or 1
-    low, high = min(values) - margin, max(values) + margin
+def page(title, diagrams):
+    """Two panels side by side."""
     width, height = EDGE + 2 * WIDTH + GAP + 10, TOP + HEIGHT + 26
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" font-family="sans-serif" '
             f'font-size="11">\n'
             f'<rect width="{width}" height="{height}" fill="white"/>\n'
-            f'<text x="{EDGE}" y="18" font-size="14">{title}, {unit}</text>\n{panel(real, "real", EDGE, low, high)}\n'
-            f'{panel(simulated, "simulated", EDGE + WIDTH + GAP, low, high)}\n</svg>\n')
+            f'<text x="{EDGE}" y="18" font-size="14">{title}</text>\n' + "\n".join(diagrams) + "\n</svg>\n")
+
+
+def svg(title, unit, real, simulated):
+    """Both with one scale."""
+    scale = limits([*real.values(), *simulated.values()])
+    return page(f"{title}, {unit}", (panel(real, "real", EDGE, scale),
+                                     panel(simulated, "simulated", EDGE + WIDTH + GAP, scale)))
+
+
+def pair(title, panels, seconds):
+    """Two (title, series) of so many seconds, each with a scale of its own."""
+    return page(title, [panel(series, name, EDGE + place * (WIDTH + GAP), limits(series.values()), seconds)
+                        for place, (name, series) in enumerate(panels)])
 
 
 def draw(program, data, folder):
-    """Writes all pictures, of the first seed; gives 0, as a program's status."""
+    """Writes all of them, of the first seed."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, title, unit, site_name, series in PICTURES:
         site = next(site for site in sites.SITES if site.name == site_name)
@@ -127,4 +144,3 @@ def draw(program, data, folder):
         real = series(record if isinstance(record[0], sites.Hours) else record[0])
         (folder / f"{name}.svg").write_text(svg(title, unit, real, simulated), encoding="utf-8")
         print(folder / f"{name}.svg")
-    return 0

@@ -145,15 +145,17 @@ void PositionFilter::lag(const Vector3d& late, double dt) {
     late_ = late;
 }
 
-FilteredPosition PositionFilter::update(const PositionInput& input, const ReceiverSettings& settings) {
+FilteredPosition PositionFilter::update(const PositionInput& measured, const ReceiverSettings& settings) {
+    PositionInput input = measured;
     std::optional<Vector3d> velocity;
-    if (input.velocity)
-        velocity =
-            velocity_filter_
-                .update(parameters_, input.time, *input.velocity, input.velocity_deviation, settings.dynamic_model)
-                .vector();
-    else
+    if (measured.velocity) {
+        const Velocity<Ecef> filtered = velocity_filter_.update(parameters_, measured.time, *measured.velocity,
+                                                                measured.velocity_deviation, settings.dynamic_model);
+        velocity = filtered.vector();
+        if (velocity_filter_.rests()) input.velocity = filtered;
+    } else {
         velocity_filter_.reset();
+    }
     const double dt = time_ ? difference(input.time, *time_).value() : 0;
     const bool follows =
         time_ && !interrupted_ && dt > 0 && dt < longest_gap_s && input.velocity && velocity_count_ > 0;

@@ -30,7 +30,7 @@ void make_survey(ModernSettings& s) {
     s.measurement.clock.steering = ClockSteering::continuous;
     s.measurement.cn0_resolution = Decibels(0.25);
     s.propagation.link.ripple_at_horizon = Decibels(1);
-    set_multipath(s, {Metres(0.28), Metres(0.95), Seconds(21)});
+    set_multipath(s, {Metres(0.27), Metres(0.95), Seconds(21)});
     s.navigation.filter.kind = FilterKind::none;
     set_weights(s, Metres(0.36));
 }
@@ -41,7 +41,7 @@ void make_consumer(ModernSettings& s) {
     s.propagation.link.antenna = AntennaPattern(Decibels(3.4), Decibels(19.5), 1.3);
     s.propagation.link.ripple_at_horizon = Decibels(6);
     s.propagation.link.ripple_time = Seconds(20);
-    set_multipath(s, {Metres(0.68), Metres(7.5), Seconds(15), Seconds(400)});
+    set_multipath(s, {Metres(0.64), Metres(7.5), Seconds(15), Seconds(400)});
     s.navigation.filter.position_memory = Seconds(20);
     s.navigation.weights.floor = Metres(0.42);
     s.navigation.weights.at_zenith = Metres(0.7);
@@ -71,7 +71,7 @@ void make_phone(ModernSettings& s) {
 // Crowns of trees up to 35° and walls whose echoes last while a satellite moves by a degree or less. An antenna that
 // keeps echoes off in the open keeps them off here: the multipath grows by the same factors for all receivers.
 void surround_by_houses(ModernSettings& s) {
-    constexpr double floor_growth = 3.6, horizon_growth = 0.65;
+    constexpr double floor_growth = 3.8, horizon_growth = 0.65;
     s.propagation.loss_model.canopy_depth = Metres(11);
     StatisticalMultipath& m = s.measurement.multipath_model;
     m.floor = floor_growth * m.floor;
