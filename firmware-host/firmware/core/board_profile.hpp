@@ -231,6 +231,7 @@ struct BoardProfile {
     std::uint8_t gnss_channels_hardware = 0, gnss_channels_used = 0;
     std::uint8_t gnss_supported = 0,
                  gnss_simultaneous = 0;             ///< of MON-GNSS: bits 0 GPS, 1 GLONASS, 2 BeiDou, 3 Galileo
+    double phase_deviation_scale = 1;               ///< of what RXM-RAWX says of phases, to that of the loop
     double doppler_deviation_hz = 0;                ///< of what RXM-RAWX says of Dopplers, beside the loop
     bool comms_output_port = false;                 ///< MON-COMMS tells by which port it leaves
     std::size_t galileo_words = 8;                  ///< of a pair of pages in RXM-SFRBX; a ninth tells nothing

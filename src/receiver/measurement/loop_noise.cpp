@@ -90,6 +90,19 @@ void SlowProcess::advance(GpsTime now, Seconds memory, Seconds dt) {
     }
 }
 
+double Smoothed::follow(double now, Seconds dt, Seconds memory) {
+    const double before = before_;
+    before_ = now;
+    if (!started_ || !(memory > Seconds(0)) || !(dt > Seconds(0))) {
+        if (!started_ || !(memory > Seconds(0))) value_ = now;
+        started_ = true;
+        return value_;
+    }
+    const double forgotten = -std::expm1(-dt.value() / memory.value());
+    value_ += forgotten * (before - value_) + (1 - forgotten * memory.value() / dt.value()) * (now - before);
+    return value_;
+}
+
 SignalProcesses::SignalProcesses(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite,
                                  Signal signal)
     : code(memory_of(parameters.code_loop.bandwidth),

@@ -40,7 +40,7 @@ public:
         : parameters_(parameters), seed_(seed), clock_(clock_of(parameters, seed)) {}
 
     Measurement measure(const Arrivals& arrivals, GpsTime time, const ReceiverSettings& settings) {
-        follow_restarts(settings, time);
+        follow_restarts(settings);
         Measurement result;
         ChannelEpoch epoch = begin_epoch(arrivals, time, result);
         epoch.corrected = settings.corrections != CorrectionState::none;
@@ -52,6 +52,7 @@ public:
         }
         for (SignalChannel& channel : channels_)
             if (!channel.visited_at(time)) channel.miss(epoch);
+        if (!found_ && !result.observations.signals.empty()) found_ = time;
         last_ = time;
         return result;
     }
@@ -73,11 +74,11 @@ private:
         return *place;
     }
 
-    void follow_restarts(const ReceiverSettings& settings, GpsTime time) {
+    void follow_restarts(const ReceiverSettings& settings) {
         if (last_ && settings.restarts == restarts_) return;
         restarts_ = settings.restarts;
         start_ = settings.start;
-        started_ = time;
+        found_.reset();
         for (SignalChannel& channel : channels_)
             channel.forget();
     }
@@ -86,7 +87,8 @@ private:
     ChannelEpoch begin_epoch(const Arrivals& arrivals, GpsTime time, Measurement& result) {
         const Seconds passed = last_ ? std::max(difference(time, *last_), Seconds(0)) : Seconds(0);
         ChannelEpoch epoch{parameters_, time, passed, arrivals.antenna_speed > slowest_motion, {}, {}, {}, start_};
-        if (difference(time, started_) >= parameters_.acquisition.settled_after) epoch.knowledge = StartKind::hot;
+        const bool settled = found_ && difference(time, *found_) >= parameters_.acquisition.settled_after;
+        if (settled) epoch.knowledge = StartKind::hot;
         if (!steps_ || steps_since_last_ != passed) {
             steps_ = noise_steps(parameters_, passed);
             steps_since_last_ = passed;
@@ -130,7 +132,7 @@ private:
     std::optional<ReceiverClock> clock_;
     std::vector<SignalChannel> channels_;  // ascending by satellite, then signal
     std::optional<GpsTime> last_;
-    GpsTime started_;
+    std::optional<GpsTime> found_;  // when the first signal was, since the start
     StartKind start_ = StartKind::hot;
     int restarts_ = 0;
     std::optional<NoiseSteps> steps_;

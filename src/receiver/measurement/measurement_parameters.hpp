@@ -23,8 +23,8 @@ struct AcquisitionParameters {
     Seconds hot_search{0};  ///< of a hot start, and of a satellite's second signals when its first is locked
     Seconds warm_search{6};
     Seconds cold_search{12};
-    Seconds settled_after{60};      ///< a start: from then on everything is known, whatever its kind
-    DbHz phase_threshold{26};       ///< C/N0 from which the carrier's phase is locked
+    Seconds settled_after{60};  ///< the first signal of a start: from then on everything is known, whatever its kind
+    DbHz phase_threshold{26};   ///< C/N0 from which the carrier's phase is locked
     DbHz phase_loss_threshold{24};  ///< below it, it is lost
     Seconds pull_in{1};             ///< of code lock, until the phase is locked
     Seconds half_cycle_after{6};    ///< of phase lock, until the half cycle of a signal with data bits is resolved
@@ -49,12 +49,14 @@ struct MeasurementParameters {
     ReceiverClockParameters clock;
     AcquisitionParameters acquisition;
     StatisticalMultipath multipath_model;
-    double multipath_share = 1;  ///< of it, that its correlators leave
+    double multipath_share = 1;      ///< of it, that its correlators leave
+    Seconds multipath_smoothing{0};  ///< of it, by a code loop that the carrier aids
     Seconds doppler_window{
         0.1};                ///< of the carrier, whose change over it is the Doppler; 0: that of the frequency loop
     Decibels cn0_offset{0};  ///< of the reported C/N0
     /// Of what it says of its ranges' deviation, beside the code loop; nothing: what the correlators leave of m0.
     std::optional<Metres> range_deviation_floor{};
+    Metres range_deviation_weak{0};   ///< and this of a signal of 30 dB-Hz, tenfold for each 10 dB less
     Decibels cn0_resolution{1};       ///< of the reported C/N0; 0: none
     Seconds scintillation_time{0.8};  ///< correlation time of scintillating phase (MODELS.md 7.11)
     double slips_per_hour = 0;        ///< of each tracked carrier in good conditions; more come with weak signals

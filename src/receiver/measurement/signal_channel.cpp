@@ -33,6 +33,17 @@ MetresPerSecond added_rate(const Arrival& arrival) {
            arrival.false_range_rate - arrival.false_iono_rate;
 }
 
+// Not std::hypot(): these numbers are far from overflow, and it is called for every signal.
+double root_of_squares(double a, double b) { return std::sqrt(a * a + b * b); }
+
+// What a receiver says of its ranges.
+Metres known_deviation(const MeasurementParameters& p, Metres code, DbHz cn0) {
+    const Metres floor = p.range_deviation_floor.value_or(p.multipath_model.floor * p.multipath_share);
+    const double strong = root_of_squares(code.value(), floor.value());
+    if (p.range_deviation_weak == Metres(0)) return Metres(strong);
+    return Metres(root_of_squares(strong, p.range_deviation_weak.value() * std::pow(10, (30 - cn0.value()) / 10)));
+}
+
 // SBAS corrects GPS alone today (EGNOS Open Service SDD 2.3, WAAS Performance Standard).
 std::optional<Metres> augmentation_of(const Arrival& arrival, Metres iono) {
     if (arrival.id.constellation != Constellation::gps) return std::nullopt;
@@ -51,9 +62,6 @@ DbHz reported_cn0(DbHz cn0, Decibels resolution) {
 double multipath_deviation(const StatisticalMultipath& model, Angle elevation) {
     return model.floor.value() + model.at_horizon.value() * low_share(elevation);
 }
-
-// Not std::hypot(): these numbers are far from overflow, and it is called for every signal.
-double root_of_squares(double a, double b) { return std::sqrt(a * a + b * b); }
 
 }  // namespace
 
@@ -143,8 +151,10 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
     // Without the line of sight the excess path is the error, and the scene has told it.
     const double multipath =
         input.arrival.line_of_sight ? parameters.multipath.factor() * parameters.multipath_share : 0;
-    terms_.multipath = Metres(multipath * processes_.multipath.value() *
-                              multipath_deviation(parameters.multipath_model, input.arrival.direction.elevation));
+    const double smooth =
+        processes_.smooth_multipath.follow(processes_.multipath.value(), passed, parameters.multipath_smoothing);
+    terms_.multipath =
+        Metres(multipath * smooth * multipath_deviation(parameters.multipath_model, input.arrival.direction.elevation));
     terms_.phase_multipath = parameters.multipath_model.phase_ratio * terms_.multipath;
 }
 
@@ -218,9 +228,6 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
                              arrival.excess_rate.value() + arrival.false_range_rate.value() -
                              arrival.false_iono_rate.value() * ratio * ratio + epoch.clock_drift.value() -
                              speed_of_light * arrival.clock_drift;
-    const Metres floor =
-        parameters.range_deviation_floor.value_or(parameters.multipath_model.floor * parameters.multipath_share);
-
     Observation result;
     result.satellite = satellite_;
     result.signal = signal_;
@@ -229,7 +236,7 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
                               parameters.cn0_resolution);
     result.pseudorange = Metres(path + speed_of_light * input.signal.group_delay.value() + iono +
                                 terms_.multipath.value() + terms_.code_noise.value());
-    result.pseudorange_deviation = Metres(root_of_squares(deviations_.code.value(), floor.value()));
+    result.pseudorange_deviation = known_deviation(parameters, deviations_.code, result.cn0);
     result.doppler = Hertz(-path_rate / wavelength + terms_.doppler_noise.value());
     result.doppler_deviation = deviations_.frequency;
     result.half_cycle_resolved = lock_.half_cycle_resolved();

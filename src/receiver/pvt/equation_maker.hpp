@@ -30,8 +30,8 @@ public:
     /// @param observations outlive what is returned
     EpochEquations make(TransmitterSource& transmitters, const Observations& observations,
                         const ReceiverSettings& settings, const std::optional<Geodetic>& place, bool corrected);
-    /// The epoch has a fix in three dimensions, or none.
-    void solved(bool in_three_dimensions) { choice_.solved(in_three_dimensions); }
+    /// The epoch has a sound fix in three dimensions, or none.
+    void solved(bool soundly) { choice_.solved(soundly); }
     /// The receiver has started anew.
     void reset();
 

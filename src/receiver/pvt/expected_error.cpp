@@ -56,7 +56,7 @@ double NoiseScale::of(const SinglePoint& solution, bool consistent, GpsTime time
         average_ += (1 - std::exp(-dt / averaged_over_s)) * (seen - average_);
     }
     last_ = time;
-    const double doubt = std::sqrt(1 + 3 * std::exp(-difference(time, *since_).value() / believed_after_s));
+    const double doubt = std::sqrt(1 + 4 * std::exp(-difference(time, *since_).value() / believed_after_s));
     return doubt * (consistent ? average_ : std::max(average_, seen));
 }
 

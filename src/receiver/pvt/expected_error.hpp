@@ -53,15 +53,17 @@ ExpectedError expected_error_left(SinglePoint solution, const NavigationParamete
                                   const SiteCorrections& air);
 
 /// By how much the noise of a solution is larger than its weights expect, as its residuals say, over some seconds. At
-/// first a receiver believes itself half as much, until its filter has averaged: ours, after a u-blox that began with
-/// 6.5 m and told 2.9 m after 10 s and 1.7 m after 30 s (docs/fidelity.md, Besançon).
+/// first a receiver believes itself less than half as much, until its filter has averaged: ours, after a u-blox that
+/// began with 6.5 m and told 2.9 m after 10 s and 1.7 m after 30 s (docs/fidelity.md, Besançon).
 ///
 /// State: since when there are solutions, and the average.
 class NoiseScale {
 public:
     /// @param consistent the residuals' test was passed: else they count at once
     double of(const SinglePoint& solution, bool consistent, GpsTime time);
-    void reset() { since_.reset(); }
+    /// By the residuals of the last seconds alone.
+    [[nodiscard]] double average() const { return average_; }
+    void reset() { *this = NoiseScale(); }
 
 private:
     std::optional<GpsTime> since_;

@@ -76,8 +76,6 @@ std::optional<CheckedSolution> IntegrityMonitor::solve(std::span<RangeEquation> 
 
 namespace {
 
-constexpr double soundest_pdop = 6;  // up to which a geometry is sound; ours
-
 bool touched_by_ionosphere(const RangeEquation& e) { return e.carrier > Hertz(0); }
 
 }  // namespace

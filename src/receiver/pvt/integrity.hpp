@@ -13,6 +13,9 @@
 
 namespace skyloop::inline receiver {
 
+/// PDOP up to which a geometry is sound; ours.
+inline constexpr double soundest_pdop = 6;
+
 /// The value that a chi-square variable exceeds with the given probability, x of Q(ν/2, x/2).
 /// @param degrees of freedom, from 1  @param probability above 0, below 1
 double chi_square_threshold(int degrees, double probability);

@@ -154,6 +154,7 @@ void NavigationEngine::State::solve_position(const ReceiverSettings& settings, E
     const bool corrects = models && corrected_ == CorrectionState::none;
     SinglePointSetup setup{time_,     parameters_.weights, settings.elevation_mask, corrects ? &corrections_ : nullptr,
                            position_, std::nullopt};
+    setup.noise = noise_.average();
     if (parameters_.fixed_position && settings.dynamic_model == DynamicModel::stationary) {
         setup.start = to_ecef(*parameters_.fixed_position);
         epoch.point = solve_clocks(epoch.equations, setup);
@@ -360,7 +361,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
     Fix fix;
     fix.time = time_;
     fix.leap_seconds = knowledge_.leap_seconds.offset(time_);
-    maker_.solved(epoch.point && !epoch.point->height_held);
+    maker_.solved(epoch.point && !epoch.point->height_held && epoch.point->dop.pdop <= soundest_pdop);
     if (epoch.point) {
         fill_solved(epoch, settings, fix);
         clock_known_at_ = observations.receive_time;

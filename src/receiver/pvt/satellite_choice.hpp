@@ -19,8 +19,8 @@ public:
     void begin(const Observations& observations);
     /// Whether a satellite of that epoch is used. @param first of its signals; each is asked for once an epoch
     bool takes(const Observation& first);
-    /// The epoch has a fix in three dimensions, or none.
-    void solved(bool in_three_dimensions) { solved_ = in_three_dimensions; }
+    /// The epoch has a sound fix in three dimensions, or none.
+    void solved(bool soundly) { solved_ = soundly; }
     /// The receiver has started anew, and has no fix.
     void reset() { *this = SatelliteChoice(parameters_); }
 

@@ -250,7 +250,8 @@ void Adjustment::take_measured_ionosphere() {
     std::vector<WeighedDelay> delays;
     for (std::size_t i = 0; i < work_.size(); ++i)
         if (work_[i].ionosphere > Metres(0))
-            delays.push_back({work_[i].ionosphere.value(), work_[i].code_variance, equations_[i].ionosphere, 0, i});
+            delays.push_back({work_[i].ionosphere.value(), square(setup_.noise) * work_[i].code_variance,
+                              equations_[i].ionosphere, 0, i});
     ionosphere_doubt_ = weigh_measured_delays(delays);
     for (const WeighedDelay& d : delays) {
         work_[d.index].ionosphere = Metres(d.delay);

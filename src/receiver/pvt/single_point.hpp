@@ -51,6 +51,7 @@ struct SinglePointSetup {
     const RangeCorrections* corrections = nullptr;  ///< absent: none
     std::optional<Position<Ecef>> start{};          ///< absent: the centre of the Earth
     std::optional<HeldHeight> held_height{};        ///< for solutions that three ranges must carry
+    double noise = 1;                               ///< of the codes, against what the weights expect
 };
 
 /// What became of one pseudorange.

@@ -9,7 +9,7 @@ namespace skyloop::inline receiver {
 namespace {
 
 constexpr double longest_absence_s = 60;  // over which the delay is carried on
-constexpr double alike_s = 30;            // for so long echoes of the code stay alike at rest, about; ours
+constexpr double alike_s = 100;  // for so long echoes of the code stay alike at rest between houses, about; ours
 
 double metres_of_phase(const Observation& o) { return *o.carrier_phase * speed_of_light / o.carrier.value(); }
 

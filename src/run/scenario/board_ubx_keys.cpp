@@ -154,6 +154,7 @@ void read_board_ubx(TableReader& ubx, BoardProfile& board) {
     ubx.integer("gnss_channels_used", board.gnss_channels_used, {0, 255});
     ubx.integer("gnss_supported", board.gnss_supported, {0, 15});
     ubx.integer("gnss_simultaneous", board.gnss_simultaneous, {0, 4});
+    ubx.number("phase_deviation_scale", board.phase_deviation_scale, {0, 100});
     ubx.number("doppler_deviation_hz", board.doppler_deviation_hz, {0, 100});
     ubx.boolean("comms_output_port", board.comms_output_port);
     ubx.integer("galileo_words", board.galileo_words, {8, 9});

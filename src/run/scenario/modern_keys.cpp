@@ -67,8 +67,12 @@ void read_tracking(TableReader& table, MeasurementParameters& p) {
         {"of the carrier, whose change over it is the Doppler; 0: that of the frequency loop", "0.1; phone 0.15"});
     table.number("multipath_share", p.multipath_share, {0, 10},
                  "of the echoes' errors where there is no scene, that the correlators leave");
+    table.quantity("multipath_smoothing_s", p.multipath_smoothing, {0, 1000},
+                   "of these errors, by a code loop that the carrier aids; 0: none");
     table.quantity("range_deviation_floor_m", p.range_deviation_floor, {0, 100},
                    {"of what the receiver says of its ranges, beside the code loop", "multipath.floor_m"});
+    table.quantity("range_deviation_weak_m", p.range_deviation_weak, {0, 100},
+                   "and of a signal of 30 dB-Hz, tenfold for each 10 dB less");
     table.quantity("cn0_offset_db", p.cn0_offset, {-30, 30}, "of the reported C/N0");
     table.quantity("cn0_resolution_db", p.cn0_resolution, {0, 10}, {"of the reported C/N0; 0: none", "1; survey 0.25"});
     table.number("slips_per_hour", p.slips_per_hour, {0, 1e6}, {"of each carrier in good conditions", "0; phone 1500"});

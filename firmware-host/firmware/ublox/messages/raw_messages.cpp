@@ -24,9 +24,10 @@ std::uint8_t exponent_code(double deviation, double unit) {
 }
 
 // n of 0.004 cycles·n; 15 says that there is no phase.
-std::uint8_t phase_deviation_code(const Observation& o) {
+std::uint8_t phase_deviation_code(const Observation& o, double scale) {
     if (!o.carrier_phase) return invalid_phase_deviation;
-    return std::clamp(nearest<std::uint8_t>(o.carrier_phase_deviation / 0.004), std::uint8_t{1}, std::uint8_t{14});
+    return std::clamp(nearest<std::uint8_t>(scale * o.carrier_phase_deviation / 0.004), std::uint8_t{1},
+                      std::uint8_t{14});
 }
 
 // Cycles. Those of geostationary BeiDou satellites lie half a cycle below the phase that RINEX means, as decoders of
@@ -50,7 +51,7 @@ RxmRawxItem raw_measurement(const Observation& o, const ReportContext& context) 
     if (o.carrier_phase) item.locktime.set(std::min(longest_lock_s, o.lock_time.value()));
     item.cno.set(o.cn0.value());
     item.pr_stdev = exponent_code(o.pseudorange_deviation.value(), 0.01);
-    item.cp_stdev = phase_deviation_code(o);
+    item.cp_stdev = phase_deviation_code(o, context.board.phase_deviation_scale);
     item.do_stdev = exponent_code(std::hypot(o.doppler_deviation.value(), context.board.doppler_deviation_hz), 0.002);
     item.trk_stat =
         static_cast<std::uint8_t>(1 | (o.carrier_phase ? 2 : 0) | (o.carrier_phase && o.half_cycle_resolved ? 4 : 0));

@@ -82,6 +82,17 @@ private:
     double value_;
 };
 
+/// What a first-order filter makes of a process: it follows a straight line between two epochs exactly.
+class Smoothed {
+public:
+    /// @param now the process @param dt since the last time  @param memory of the filter; 0: none
+    double follow(double now, Seconds dt, Seconds memory);
+
+private:
+    double value_ = 0, before_ = 0;
+    bool started_ = false;
+};
+
 /// The processes of one signal, each with a stream of its own.
 struct SignalProcesses {
     SignalProcesses(const MeasurementParameters& parameters, std::uint64_t seed, SatelliteId satellite, Signal signal);
@@ -89,6 +100,7 @@ struct SignalProcesses {
     void advance(const NoiseSteps& steps, bool scintillates);
 
     SlowProcess code, multipath;  ///< which are advanced by themselves
+    Smoothed smooth_multipath;
     UnitProcess phase, frequency, scintillation;
 };
 
