@@ -19,7 +19,7 @@ struct ChannelParameters {
     Decibels diffuse{0};                         ///< more of the table's diffuse power
     Angle reach = Angle::degrees(30);            ///< of an obstacle over the sky: no correlation beyond
     MetresPerSecond creep{0.01};                 ///< at which states change at rest, by the satellites' motion and wind
-    Hertz beat{0.01};                            ///< 1 σ of the echoes' frequency against the direct ray at rest
+    Hertz beat{0.004};                           ///< 1 σ of the echoes' frequency against the direct ray at rest
     Seconds averaging{0.5};                      ///< over which receivers average what fades
     Metres echo_delay{15};                       ///< mean excess of the echoes
     Metres echo_length{15};                      ///< way over which an echo keeps its excess
