@@ -59,14 +59,20 @@ ChannelParameters channel_of(Surroundings surroundings) {
             return fitted_channel_of(surroundings);
         case Surroundings::urban_canyon:
             p = fitted_channel_of(Surroundings::urban);
-            p.bad_odds = 8;
+            p.bad_odds = 4;
+            p.bad_loss = Decibels(8);
+            p.reach = Angle::degrees(60);
+            p.echo_delay = Metres(45);
             break;
         case Surroundings::indoor_window:
             p = fitted_channel_of(Surroundings::urban);
-            p.bad_odds = 20;
+            p.bad_odds = 5;
             p.distance_scale = 0.5;
-            p.good_loss = Decibels(5);
-            p.echo_delay = Metres(20);
+            p.good_loss = Decibels(8);
+            p.bad_loss = Decibels(5);
+            p.diffuse = Decibels(-6);
+            p.reach = Angle::degrees(30);
+            p.echo_delay = Metres(10);
             break;
     }
     return p;
