@@ -84,7 +84,7 @@ void SignalChannel::hear_echoes(const ChannelInput& input, const ChannelEpoch& e
     const MeasurementParameters& parameters = epoch.parameters;
     const double factor = parameters.multipath.factor();
     echoes_ = {};
-    if (!input.arrival.echoes_known || factor == 0) return;
+    if (input.arrival.echoes.empty() || factor == 0) return;
     echoes_ = correlator_multipath(input.arrival.echoes,
                                    {code_loop_, parameters.phase_loop, input.signal.carrier, traits_.boc});
     echoes_.code = echoes_.code * factor;
@@ -156,6 +156,9 @@ void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& e
     terms_.multipath =
         Metres(multipath * smooth * multipath_deviation(parameters.multipath_model, input.arrival.direction.elevation));
     terms_.phase_multipath = parameters.multipath_model.phase_ratio * terms_.multipath;
+    // Surroundings without a scene add theirs.
+    if (input.arrival.line_of_sight) terms_.multipath += echoes_.code;
+    terms_.phase_multipath += echoes_.phase;
 }
 
 // The count of cycles does not survive when another ray is tracked, nor when echoes that outdo it turn the phase over,
@@ -169,7 +172,7 @@ bool SignalChannel::path_changed(const ChannelInput& input, const ChannelEpoch& 
     const double jump = (added_path(arrival) - added_path_).value() - steady;
     constexpr double beyond_any_motion = 0.5;  // m: what the rate leaves of a ray's change in an epoch
     if (std::abs(jump) > beyond_any_motion + 0.1 * std::abs(steady)) return true;
-    if (!arrival.echoes_known) return false;
+    if (!arrival.echoes_known && arrival.echoes.empty()) return false;
     const Metres half_wave(speed_of_light / input.signal.carrier.value() / 2);
     return std::abs((terms_.phase_multipath - phase_multipath_).value()) > half_wave.value();
 }

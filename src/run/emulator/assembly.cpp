@@ -271,6 +271,11 @@ std::vector<std::string> scenario_warnings(const Scenario& scenario, const Geoid
         warnings.push_back(std::move(warning));
     if (scenario.scene.given() && !city_acts(scenario))
         warnings.emplace_back("scene: errors = \"none\" leaves the buildings out, whose echoes are errors");
+    const ModernSettings& modern = scenario.model.modern;
+    if (scenario.scene.given() && !scenario.model.sensor_model && modern.propagation.channel_model.environment)
+        warnings.push_back(
+            fmt::format("model.modern.surroundings: '{}' adds no obstacles or echoes: the scene describes them",
+                        surroundings_names[static_cast<std::size_t>(modern.surroundings)]));
     return warnings;
 }
 

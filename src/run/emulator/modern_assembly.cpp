@@ -62,7 +62,8 @@ constexpr Seconds warm_search{3};
 Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
                                                                           const NavigationSource& navigation,
                                                                           const WorldData& world) {
-    const ModernSettings settings = effective(scenario.model.modern);
+    ModernSettings settings = effective(scenario.model.modern);
+    if (scenario.scene.given()) settings.propagation.channel_model.environment.reset();
     ModernContext context;
     context.run = span_of_tables(scenario, world.start);
     context.atmosphere = scenario.atmosphere;

@@ -198,6 +198,13 @@ void read_solution(TableReader& table, ModernSettings& settings) {
                p.differential.kind, "corrections from outside, as a regime of the errors");
 }
 
+void read_car(TableReader& modern, ModernSettings& settings) {
+    ChannelParameters& channel = settings.propagation.channel_model;
+    modern.where(channel.environment.has_value(), "with surroundings other than open-sky",
+                 [&] { modern.boolean("car", settings.car, "the antenna is in a car, below its roof"); });
+    if (settings.car) channel.roof = loss_of_car_roof;
+}
+
 // What was told idle beside the truth acts after all where the receiver does not correct, or Galileo by the very truth.
 void forget_acting_residual(ModernSettings& settings) {
     const IonosphereParameters& truth = settings.propagation.ionosphere_model;
@@ -228,12 +235,13 @@ void read_modern_keys(TableReader& modern, ModernSettings& settings, const std::
                       modern_preset_names[static_cast<std::size_t>(settings.preset)]);
     const auto surroundings =
         modern.choice("surroundings", surroundings_names,
-                      "where there is no scene: a roof or a field, or a garden between houses and trees",
+                      "what is around the antenna where there is no scene; sets the numbers of channel",
                       surroundings_names[static_cast<std::size_t>(settings.surroundings)]);
     const bool errors = settings.errors;
     settings = ModernSettings::of(preset ? static_cast<ModernPreset>(*preset) : settings.preset,
                                   surroundings ? static_cast<Surroundings>(*surroundings) : settings.surroundings);
     settings.errors = errors;
+    read_car(modern, settings);
     read_terms(modern, settings);
     read_modern_propagation_keys(modern, settings, folder);
     modern.table("multipath", "echoes where there is no scene: σ = floor + horizon · exp(−elevation/10°)",

@@ -102,6 +102,7 @@ ModernSettings ModernSettings::of(ModernPreset preset, Surroundings surroundings
             break;
     }
     if (surroundings == Surroundings::residential) surround_by_houses(settings);
+    settings.propagation.channel_model = channel_of(surroundings);
     return settings;
 }
 
@@ -117,6 +118,7 @@ std::vector<NamedTerm> error_terms(ModernSettings& settings) {
             {"clouds", &p.clouds, "loss in clouds"},
             {"rain", &p.rain, "loss in rain"},
             {"foliage", &p.foliage, "loss in trees"},
+            {"channel", &p.channel, "what surroundings without a scene do: shadowing, fading, echoes"},
             {"antenna", &p.antenna, "gain of the receiving antenna less the film on it"},
             {"satellite_power", &p.satellite_power, "spread between satellites, and its ripple"},
             {"scintillation", &p.scintillation, "restless ionosphere: fading, noise of the loops, loss of lock"},

@@ -21,17 +21,31 @@ enum class ModernPreset {
 };
 inline constexpr std::string_view modern_preset_names[] = {"survey", "consumer", "phone"};
 
-/// What stands around the antenna, as far as no scene tells.
+/// What is around the antenna where no scene describes it.
 enum class Surroundings {
-    open_sky,     ///< a roof or a field
-    residential,  ///< a garden between houses and trees
+    open_sky,        ///< a roof or a field
+    rural,           ///< a road between fields, single houses and trees
+    residential,     ///< a garden between houses and trees
+    forest,          ///< under trees
+    suburban_drive,  ///< roads through suburbs
+    urban,           ///< streets of a town
+    urban_canyon,    ///< a narrow street between high houses
+    indoor_window,   ///< a room, near its window
 };
-inline constexpr std::string_view surroundings_names[] = {"open-sky", "residential"};
+inline constexpr std::string_view surroundings_names[] = {"open-sky",       "rural", "residential",  "forest",
+                                                          "suburban-drive", "urban", "urban-canyon", "indoor-window"};
+
+/// Towards the zenith. Fitted to a record of one car (tools/validate, car).
+inline constexpr Decibels loss_of_car_roof{4};
+
+/// The channel's numbers for surroundings; of an open sky it has no environment.
+ChannelParameters channel_of(Surroundings surroundings);
 
 /// Every number of the modern profile. One that is made by itself has no preset's numbers: take it from of().
 struct ModernSettings {
     ModernPreset preset = ModernPreset::consumer;
     Surroundings surroundings = Surroundings::open_sky;
+    bool car = false;    ///< the antenna is in a car, below its roof
     bool errors = true;  ///< false: geometry and clocks of satellites only, every error and delay off, no filter
     ModernPropagationParameters propagation;
     MeasurementParameters measurement;

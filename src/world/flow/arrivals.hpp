@@ -47,7 +47,8 @@ struct Arrival {
     int reflections = 0;               ///< of the tracked ray
     Metres excess_path;                ///< of the tracked ray over the direct one
     MetresPerSecond excess_rate;       ///< its derivative
-    bool echoes_known = false;         ///< `echoes` is all multipath that there is: a scene tells it
+    bool echoes_known = false;         ///< `echoes` is all multipath that there is: a scene tells it; else what a
+                                       ///< receiver has anyway comes to it
     std::vector<Echo> echoes;          ///< strongest first
     Metres signal_in_space_error;      ///< of orbit and clock against the broadcast, in the range
     MetresPerSecond range_rate_error;  ///< its derivative
@@ -68,6 +69,7 @@ struct Arrival {
     Decibels cloud_loss;
     Decibels rain_loss;
     Decibels foliage_loss;
+    Decibels shadowing_loss;  ///< of the tracked ray by surroundings that no scene describes; below 0: a gain
     Decibels iono_loss;
     Decibels reflection_loss;            ///< of the tracked ray, by reflections and at edges
     Decibels antenna_gain;               ///< of the receiving antenna in this direction, dBic

@@ -6,6 +6,7 @@
 #include "world/propagation/ionosphere_effects.hpp"
 #include "world/propagation/modern_link_budget.hpp"
 #include "world/propagation/signal_in_space_error.hpp"
+#include "world/propagation/surroundings_effect.hpp"
 #include "world/propagation/troposphere_delay.hpp"
 
 namespace skyloop::inline world {
@@ -39,6 +40,9 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const Mod
     effects.push_back(std::make_unique<FoliageLoss>(parameters.loss_model, parameters.foliage));
     effects.push_back(std::make_unique<ScintillationIndices>(parameters.scintillation_model, parameters.scintillation,
                                                              context.leap_seconds));
+    if (parameters.channel_model.environment)
+        effects.push_back(
+            std::make_unique<SurroundingsEffect>(parameters.channel_model, parameters.channel, context.seed));
     effects.push_back(std::make_unique<ModernLinkBudget>(parameters, context.seed));
     return effects;
 }

@@ -123,7 +123,7 @@ DecibelWattsPerHertz ModernLinkBudget::noise(Hertz carrier) const {
 
 void ModernLinkBudget::set_cn0(Arrival& arrival, const TruthState& truth) const {
     const Decibels losses = arrival.gas_loss + arrival.cloud_loss + arrival.rain_loss + arrival.foliage_loss +
-                            arrival.iono_loss + arrival.reflection_loss;
+                            arrival.iono_loss + arrival.reflection_loss + arrival.shadowing_loss;
     // At the antenna's port.
     const double signal = isotropic_power(arrival, truth).value() + arrival.antenna_gain.value() +
                           arrival.power_offset.value() - losses.value();

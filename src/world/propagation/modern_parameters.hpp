@@ -11,6 +11,7 @@
 #include "world/gnss/shell_ionosphere.hpp"
 #include "world/gnss/signal.hpp"
 #include "world/propagation/antenna_and_noise.hpp"
+#include "world/propagation/channel_parameters.hpp"
 
 namespace skyloop::inline world {
 
@@ -184,6 +185,7 @@ struct ModernPropagationParameters {
     IonosphereParameters ionosphere_model;
     TroposphereParameters troposphere_model;
     LossParameters loss_model;
+    ChannelParameters channel_model;
     ModernLinkParameters link;
     ScintillationParameters scintillation_model;
 
@@ -193,6 +195,7 @@ struct ModernPropagationParameters {
     ErrorTerm troposphere;          ///< the model's delay
     ErrorTerm troposphere_residual;
     ErrorTerm gas, clouds, rain, foliage;
+    ErrorTerm channel;          ///< shadowing and echoes of the surroundings
     ErrorTerm antenna;          ///< gain and film; off: an isotropic antenna
     ErrorTerm satellite_power;  ///< spread and ripple
     ErrorTerm scintillation;

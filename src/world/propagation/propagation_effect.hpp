@@ -48,6 +48,7 @@ inline void hide(Arrival& arrival) {
     arrival.excess_path = Metres(0);
     arrival.excess_rate = MetresPerSecond(0);
     arrival.reflection_loss = Decibels(0);
+    arrival.shadowing_loss = Decibels(0);
     arrival.cn0.reset();
 }
 

@@ -36,6 +36,7 @@ void arrive_as_told(Arrival& arrival, ToldPath told) {
     const Reflection* end = told.reflections.end();
     arrival.echoes_known = true;
     arrival.echoes.clear();
+    arrival.shadowing_loss = Decibels(0);
     arrival.excess_rate = MetresPerSecond(0);
     if (told.blocked && first == end) return hide(arrival);
     arrival.line_of_sight = !told.blocked;
