@@ -12,7 +12,7 @@
 #include "world/gnss/dop.hpp"
 #include "world/gnss/satellite.hpp"
 #include "world/propagation/channel_parameters.hpp"
-#include "world/propagation/knotted_process.hpp"
+#include "world/propagation/per_satellite.hpp"
 
 namespace skyloop::inline world {
 
