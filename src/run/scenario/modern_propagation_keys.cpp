@@ -200,7 +200,7 @@ void read_link(TableReader& table, ModernSettings& settings, const std::filesyst
     table.quantity("line_loss_db", p.noise.line_loss, {0, 100},
                    "between antenna and receiver: weakens the signal, and adds its own noise");
     table.quantity("noise_figure_db", p.noise.noise_figure, {0, 100}, "of the receiver");
-    table.quantity("implementation_loss_db", p.implementation_loss, {0, 100}, {"of the receiver", "2.5; phone 3.5"});
+    table.quantity("implementation_loss_db", p.implementation_loss, {0, 100}, {"of the receiver", "2.5; phone 3.8"});
     table.quantity("platform_noise_db", p.platform_noise, {0, 100},
                    "noise of the vehicle over the receiver's: car or drone 1 to 3");
     table.word("man_made_noise",

@@ -51,11 +51,11 @@ void make_consumer(ModernSettings& s) {
 // A linearly polarised antenna behind glass and a hand: 7 dB less towards the zenith, and echoes of either hand.
 void make_phone(ModernSettings& s) {
     s.propagation.link.antenna = AntennaPattern(Decibels(-9.5), Decibels(9), 1.0);
-    s.propagation.link.implementation_loss = Decibels(3.5);
+    s.propagation.link.implementation_loss = Decibels(3.8);
     s.propagation.link.ripple = Decibels(2);
     s.propagation.link.ripple_time = Seconds(10);
     s.measurement.clock.steering = ClockSteering::millisecond_jumps;
-    set_multipath(s, {Metres(7), Metres(4), Seconds(0.3)});
+    set_multipath(s, {Metres(6.6), Metres(4), Seconds(0.3)});
     s.measurement.doppler_window = Seconds(0.15);
     s.measurement.multipath_model.phase_ratio = 0.0002;
     // Its tracking sleeps for most of each second: a third of the epochs of the phase begin anew.
@@ -71,7 +71,7 @@ void make_phone(ModernSettings& s) {
 // Crowns of trees up to 35° and walls whose echoes last while a satellite moves by a degree or less. An antenna that
 // keeps echoes off in the open keeps them off here: the multipath grows by the same factors for all receivers.
 void surround_by_houses(ModernSettings& s) {
-    constexpr double floor_growth = 3.8, horizon_growth = 0.65;
+    constexpr double floor_growth = 3.3, horizon_growth = 0.65;
     s.propagation.loss_model.canopy_depth = Metres(11);
     StatisticalMultipath& m = s.measurement.multipath_model;
     m.floor = floor_growth * m.floor;
