@@ -172,7 +172,7 @@ def not_steps(name):
 
 
 SITES = (
-    Site("trees", "Aptos B, LEA-6 under trees (14 h) / consumer residential", "trees",
+    Site("trees", "Aptos B, LEA-6 under trees (14 h) / consumer forest", "trees",
          lambda program, data, setup: position_hours(data, TREES, "*.dlm.gz"), trees, of_hours(bool), short=False),
     Site("garden", "Galway garden, M8P own fixes 43 min / consumer residential", "garden",
          stream_record(f"{GARDEN}/base-20181015-1654.ubx.gz"), garden),
@@ -186,7 +186,7 @@ SITES = (
     Site("tsukuba-raw", "SEPT raw / survey", "tsukuba", tsukuba_record, raw),
     Site("phone-raw", "Phone 2016-08-22 raw / phone", "phone", phone_record, raw),
     Site("riverside-nmea", "M8P riverside NMEA / consumer open-sky", "riverside", river_record, river_nmea),
-    Site("car", "F9K car, Mountain View / f9p open-sky", "car",
+    Site("car", "F9K car, Mountain View / f9p suburban-drive, in a car", "car",
          stream_record(f"{span.FOLDER}/ublox-F9K.nmea.gz"), car),
     Site("phone", "Phone 2016-08-22 Charleston Park, GPS / phone", "phone", phone_record, phone),
     Site("aptos", "Aptos A, LEA-6 (10 h) / consumer residential", "aptos",

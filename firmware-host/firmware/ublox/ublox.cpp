@@ -13,6 +13,7 @@
 #include "receiver/protocol/ubx_mon.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "receiver/protocol/ubx_raw.hpp"
+#include "receiver/protocol/ubx_time.hpp"
 
 namespace skyloop::firmware {
 namespace {
