@@ -7,7 +7,7 @@ namespace skyloop::inline base {
 namespace {
 
 constexpr double knots_of_memory = 10;
-constexpr std::int64_t knots_of_block = 32;
+constexpr std::int64_t knots_of_block = 32, most_missed = 256;
 constexpr Nanoseconds closest_knots = std::chrono::milliseconds(1);
 
 Nanoseconds spacing_within(Nanoseconds most, Seconds correlation_time) {
@@ -57,7 +57,7 @@ void KnottedProcess::start(std::int64_t knot) {
 
 void KnottedProcess::move_to(std::int64_t knot) {
     const std::int64_t missed = started_ ? knot - knot_ - 4 : 0;
-    if (!started_ || (missed > knots_of_block && !walk_)) {
+    if (!started_ || (missed > most_missed && !walk_)) {
         start(knot);
     } else if (missed > 0 && walk_) {  // of a long absence only the end is drawn: all four knots anew
         knot_ += missed + 1;

@@ -12,19 +12,19 @@ constexpr int prn_of_first = 100;  // of S00
 
 }  // namespace
 
-void Augmentation::hear(const Observations& observations, const ReceiverSettings& settings,
-                        const std::optional<Geodetic>& place) {
+void Augmentation::update(const Observations& observations, const ReceiverSettings& settings,
+                          const std::optional<Geodetic>& place) {
     const GpsTime now = observations.receive_time;
-    std::map<SatelliteId, GpsTime> heard;
+    std::map<SatelliteId, GpsTime> tracked;
     for (const Observation& o : observations.signals) {
         if (o.satellite.constellation != Constellation::sbas || !o.pseudorange) continue;
-        const auto known = heard_since_.find(o.satellite);
-        const GpsTime since = known == heard_since_.end() ? now : known->second;
-        heard.emplace(o.satellite, since);
+        const auto known = tracked_since_.find(o.satellite);
+        const GpsTime since = known == tracked_since_.end() ? now : known->second;
+        tracked.emplace(o.satellite, since);
         const auto system = sbas_system(o.satellite.number + prn_of_first);
         if (system && place && difference(now, since) >= collection && skyloop::serves(*system, *place)) served_ = now;
     }
-    heard_since_ = std::move(heard);
+    tracked_since_ = std::move(tracked);
     serves_ = settings.sbas_corrections && served_ && difference(now, *served_) <= kept;
 }
 

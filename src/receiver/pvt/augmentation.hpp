@@ -13,16 +13,17 @@ namespace skyloop::inline receiver {
 
 /// Whether a receiver has the corrections of an SBAS system at hand.
 ///
-/// State: since when each satellite of the systems has been heard, and when one last served.
+/// State: since when each satellite of the systems has been tracked, and when one last served.
 class Augmentation {
 public:
     /// An epoch; they come in ascending time. @param place where the receiver believes to be
-    void hear(const Observations& observations, const ReceiverSettings& settings, const std::optional<Geodetic>& place);
+    void update(const Observations& observations, const ReceiverSettings& settings,
+                const std::optional<Geodetic>& place);
     [[nodiscard]] bool serves() const { return serves_; }
     void reset() { *this = Augmentation(); }
 
 private:
-    std::map<SatelliteId, GpsTime> heard_since_;
+    std::map<SatelliteId, GpsTime> tracked_since_;
     std::optional<GpsTime> served_;
     bool serves_ = false;
 };

@@ -42,7 +42,7 @@ EpochEquations EquationMaker::make(TransmitterSource& transmitters, const Observ
     EpochEquations epoch;
     corrected_ = corrected;
     choice_.begin(observations);
-    augmentation_.hear(observations, settings, place);
+    augmentation_.update(observations, settings, place);
     for (std::size_t i = 0; i < all.size();) {
         // The signals of one satellite: its first one, or what there is, and the others.
         const Observation* first = nullptr;

@@ -45,19 +45,16 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
 }
 
 double NoiseScale::of(const SinglePoint& solution, bool consistent, GpsTime time) {
-    constexpr double averaged_over_s = 20, longest_pause_s = 10, believed_after_s = 10, least = 0.3, most = 10;
-    const double seen =
-        solution.redundancy > 0 ? std::clamp(std::sqrt(solution.statistic / solution.redundancy), least, most) : 1;
-    const double dt = since_ ? difference(time, last_).value() : 0;
-    if (!since_ || dt < 0 || dt > longest_pause_s) {
-        since_ = time;
-        average_ = seen;
-    } else {
-        average_ += (1 - std::exp(-dt / averaged_over_s)) * (seen - average_);
-    }
+    constexpr double averaged_over_s = 20, believed_after_s = 10, least = 0.3, most = 10;
+    // Of a held height the residuals say nothing.
+    if (solution.redundancy <= 0 || solution.height_held) return 1;
+    const double seen = std::clamp(std::sqrt(solution.statistic / solution.redundancy), least, most);
+    if (!since_) since_ = last_ = time;
+    average_ += (1 - std::exp(-std::max(difference(time, last_).value(), 0.0) / averaged_over_s)) * (seen - average_);
     last_ = time;
-    const double doubt = std::sqrt(1 + 4 * std::exp(-difference(time, *since_).value() / believed_after_s));
-    return doubt * (consistent ? average_ : std::max(average_, seen));
+    const double scale = consistent ? average_ : std::max(average_, seen);
+    if (filter_ == FilterKind::none) return scale;
+    return scale * std::sqrt(1 + 4 * std::exp(-difference(time, *since_).value() / believed_after_s));
 }
 
 SinglePoint with_noise(SinglePoint solution, double scale) {

@@ -52,20 +52,22 @@ bool leaves_delays(const NavigationParameters& parameters);
 ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
                                   const SiteCorrections& air);
 
-/// By how much the noise of a solution is larger than its weights expect, as its residuals say, over some seconds. At
-/// first a receiver believes itself less than half as much, until its filter has averaged: ours, after a u-blox that
-/// began with 6.5 m and told 2.9 m after 10 s and 1.7 m after 30 s (docs/fidelity.md, Besançon).
+/// By how much the noise of a solution is larger than its weights expect, as its residuals say, over some seconds. A
+/// receiver with a filter believes itself less than half as much at first, until the filter has averaged: ours, after a
+/// u-blox that reported 6.5 m, 2.9 m after 10 s and 1.7 m after 30 s (receivers/besancon_20250425_ublox).
 ///
 /// State: since when there are solutions, and the average.
 class NoiseScale {
 public:
+    explicit NoiseScale(FilterKind filter) : filter_(filter) {}
     /// @param consistent the residuals' test was passed: else they count at once
     double of(const SinglePoint& solution, bool consistent, GpsTime time);
     /// By the residuals of the last seconds alone.
     [[nodiscard]] double average() const { return average_; }
-    void reset() { *this = NoiseScale(); }
+    void reset() { *this = NoiseScale(filter_); }
 
 private:
+    FilterKind filter_;
     std::optional<GpsTime> since_;
     GpsTime last_;
     double average_ = 1;

@@ -53,6 +53,7 @@ public:
           filter_(parameters.filter),
           report_(*knowledge.broadcast, received_),
           maker_(parameters),
+          noise_(parameters.filter.kind),
           position_(knowledge.last_place) {}
 
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
@@ -371,6 +372,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
         if (!epoch.time_only) position_ = epoch.point->position;
     } else {
         fill_coasting(settings, fix);
+        if (fix.type == FixType::none) noise_.reset();
     }
     // What is carried on is carried on from the last solution.
     if (epoch.point || fix.type == FixType::none) last_ = fix;

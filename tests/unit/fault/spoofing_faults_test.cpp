@@ -75,7 +75,7 @@ TEST(SpoofingFaults, ATakeoverDrawsTheFixAwayAndNothingNoticesIt) {
         const Trace trace = run.until(t);
         ASSERT_EQ(trace.epoch.fix.type, FixType::fix_3d) << t;
         EXPECT_EQ(excluded_by_raim(trace), 0) << t;
-        EXPECT_LT(largest_residual(trace), clean_residual + 6) << t;
+        EXPECT_LT(largest_residual(trace), clean_residual + 18) << t;  // echoes near the horizon have a σ of 7.5 m
         EXPECT_EQ(trace.epoch.front_end.spoofing, SpoofingIndication::none);
     }
     const Eigen::Vector3d error = test::fix_error_enu(run.until(175));

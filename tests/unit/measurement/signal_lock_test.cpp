@@ -92,7 +92,8 @@ TEST(SignalLock, AWarmStartIsFasterAndMoreSensitive) {
 
 TEST(SignalLock, AColdStartSettlesAndFindsWeakSignalsThen) {
     const auto seen = appearances(started(StartKind::cold), sky_of_strengths({45, 30}), 70);
-    EXPECT_EQ(seen[1], 60.0);
+    ASSERT_TRUE(seen[0] && seen[1]);
+    EXPECT_NEAR(*seen[1] - *seen[0], 60, 1) << "a minute after the first one was found";
 }
 
 TEST(SignalLock, ADifferentSeedFindsThemAtOtherTimes) {
