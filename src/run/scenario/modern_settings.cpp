@@ -30,7 +30,7 @@ void make_survey(ModernSettings& s) {
     s.measurement.clock.steering = ClockSteering::continuous;
     s.measurement.cn0_resolution = Decibels(0.25);
     s.propagation.link.ripple_at_horizon = Decibels(1);
-    set_multipath(s, {Metres(0.27), Metres(0.95), Seconds(23)});
+    set_multipath(s, {Metres(0.27), Metres(0.95), Seconds(22)});
     s.navigation.filter.kind = FilterKind::none;
     set_weights(s, Metres(0.36));
 }
