@@ -12,8 +12,8 @@ namespace skyloop::inline base {
 
 /// A random process that is drawn at knots, whole multiples of a spacing in GPS time, and runs through them on a cubic
 /// (Catmull and Rom 1974). It has a rate, and its path depends neither on how often it is looked at nor, but for the
-/// start of a block of knots, on when it was first: each knot has random numbers of its own, and the first look, and one
-/// after a long absence, begins at the start of its block.
+/// start of a block of knots, on when it was first: each knot has random numbers of its own, and the first look, and
+/// one after a long absence, begins at the start of its block.
 ///
 /// State: the four knots around the present instant.
 class KnottedProcess {
