@@ -94,7 +94,8 @@ TEST(ModernProfile, AnHourWandersAndDoesNotJump) {
             }
             remembered += products / squares / 4;
         }
-        EXPECT_GT(remembered, 1 / std::exp(1.0));
+        constexpr double unsure = 0.03;  // σ of the mean of four hours, about
+        EXPECT_GT(remembered, 1 / std::exp(1.0) - unsure);
         EXPECT_GT(spread, 0.2);
         EXPECT_LT(spread, 1.5);
     }
