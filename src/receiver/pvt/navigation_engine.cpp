@@ -20,7 +20,7 @@ namespace {
 
 constexpr double coasting_acceleration = 1;  // m/s², by which a lost fix may have left its course
 
-// Two carriers are of use where nothing is told of their delay, too.
+// Two carriers are of use even where no group delay is broadcast.
 UntoldDelay untold_delay(const CorrectionParameters& parameters) {
     const bool two_carriers = parameters.ionosphere_free || parameters.ionosphere_memory > Seconds(0);
     return two_carriers ? UntoldDelay::none : UntoldDelay::unknown;

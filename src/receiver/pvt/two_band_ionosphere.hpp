@@ -21,7 +21,7 @@ public:
     /// @param memory over which the codes are averaged; 0: nothing is measured
     explicit TwoBandIonosphere(Seconds memory) : memory_(memory) {}
 
-    /// Of one epoch. @param first with a pseudorange, sent as `sent` tells @param others of the same satellite, each
+    /// Of one epoch. @param first with a pseudorange, sent as `sent` says @param others of the same satellite, each
     /// with a pseudorange: the first of them on another carrier is compared with it  @return nothing where there is
     /// none, or its group delay is not known
     std::optional<MeasuredDelay> measure(TransmitterSource& transmitters, const Transmitter& sent,

@@ -52,7 +52,7 @@ TEST(MotionLimits, GrowWithTheModel) {
     EXPECT_EQ(limits(DynamicModel::portable).vertical_speed, MetresPerSecond(50));
 }
 
-// RECEIVER.md 4.8: "check: alt only", of speeds.
+// u-blox 8 / u-blox M8 receiver description (UBX-13003221), table of the dynamic platform models: no limit of speed.
 TEST(MotionLimits, OfAirborneModelsAreTheCeilingAndTheAcceleration) {
     for (const auto model : {DynamicModel::airborne_1g, DynamicModel::airborne_2g, DynamicModel::airborne_4g}) {
         const MotionLimits limits = motion_limits({.dynamic_model = model, .airborne_ceiling = Metres(50'000)});
