@@ -78,7 +78,7 @@ class BaseStationTest(unittest.TestCase):
     def test_surveys_in_and_tells_rovers_where_it_stands(self):
         with Emulator(self.path, "--speed", 20, "--wait-for-client", "--duration", 900) as emulator, connect(emulator.tty) as connection:
             client = Client(connection)
-            connection.sendall(valset([(MODE, 1), (LEAST_S, 60), (LIMIT, 20000), (NAV_SVIN, 1), (TYPE_1005, 1), (TYPE_1077, 1)]))
+            connection.sendall(valset([(MODE, 1), (LEAST_S, 60), (LIMIT, 50000), (NAV_SVIN, 1), (TYPE_1005, 1), (TYPE_1077, 1)]))
             client.hear_until(lambda data: data.count(RTCM_1005) >= 3)
             surveys, stations = client.messages("NAV-SVIN"), client.messages("station position")
             # As ground stations begin anew: off, and on again at once.
@@ -95,7 +95,7 @@ class BaseStationTest(unittest.TestCase):
         self.assertEqual([survey["duration_s"] for survey in surveys[:60]], list(range(60)))
         last = surveys[-1]
         self.assertEqual((last["valid"], last["active"], last["duration_s"], last["observations"]), (1, 0, 60, 61))
-        self.assertLess(last["mean_acc_m"], 2)
+        self.assertLess(last["mean_acc_m"], 5)
         accuracies = [survey["mean_acc_m"] for survey in surveys]
         self.assertEqual(accuracies, sorted(accuracies, reverse=True))
         mean = [whole + rest for whole, rest in zip(last["mean_ecef_m"], last["mean_ecef_hp_m"])]

@@ -157,10 +157,12 @@ Hertz doppler_jitter(Angle phase, Seconds window, Hertz carrier) {
     return Hertz(std::sqrt(thermal * thermal + own * own));
 }
 
-// Wide enough to follow what it has had time to average.
-Hertz acting_bandwidth(Hertz settled, Seconds locked) {
-    constexpr double shortest = 0.5;  // s
-    return std::max(settled, Hertz(1 / (4 * (locked.value() + shortest))));
+// Wide enough to follow what the code loop has had time to average.
+Hertz acting_bandwidth(Hertz settled, const MeasurementParameters& parameters, const TrackedSignal& signal) {
+    constexpr Seconds shortest{0.5};
+    const Seconds averaged =
+        std::min(signal.code_locked + shortest, signal.aided + memory_of(parameters.unaided_bandwidth));
+    return std::max(settled, Hertz(1 / (4 * averaged.value())));
 }
 
 }  // namespace
@@ -171,8 +173,8 @@ LoopDeviations loop_deviations(const MeasurementParameters& parameters, const Tr
     const double threshold_factor = cn0 >= parameters.acquisition.phase_threshold ? 1 : 2;
     const CarrierToNoise power(cn0);
     CodeLoop code_loop = signal.code_loop;
-    code_loop.bandwidth = acting_bandwidth(code_loop.bandwidth, signal.code_locked);
-    LoopDeviations result{code_jitter(code_loop, power) * signal.jitter_ratio,
+    code_loop.bandwidth = acting_bandwidth(code_loop.bandwidth, parameters, signal);
+    LoopDeviations result{code_jitter(code_loop, power) * signal.jitter_ratio, code_loop.bandwidth,
                           phase_jitter(parameters.phase_loop, power), scintillation.phase,
                           frequency_jitter(parameters.frequency_loop, power, threshold_factor)};
     if (scintillation.amplitude > 0) {

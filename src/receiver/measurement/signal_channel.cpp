@@ -106,12 +106,18 @@ void SignalChannel::track(const ChannelInput& input, const ChannelEpoch& epoch) 
                   epoch.now);
     if (!lock_.code_locked()) return;
     // The formulas for a signal that fades want its mean.
+    const DbHz mean_cn0 = *cn0 - DbHz(faded_.value());
     deviations_ = loop_deviations(epoch.parameters,
                                   {code_loop_, traits_.jitter_ratio, input.signal.carrier, lock_.phase_locked(),
-                                   lock_.code_locked_for(epoch.now)},
-                                  *cn0 - DbHz(faded_.value()), scintillation);
+                                   lock_.code_locked_for(epoch.now), aided_for(mean_cn0, epoch)},
+                                  mean_cn0, scintillation);
     draw_errors(input, epoch);
     follow_cycles(input, epoch, had_phase);
+}
+
+Seconds SignalChannel::aided_for(DbHz cn0, const ChannelEpoch& epoch) {
+    if (cn0 < epoch.parameters.aiding_threshold) unaided_ = epoch.now;
+    return difference(epoch.now, unaided_);
 }
 
 void SignalChannel::miss(const ChannelEpoch& epoch) { lock_.advance(epoch.parameters.acquisition, {}, epoch.now); }
@@ -124,7 +130,7 @@ void SignalChannel::forget() {
 void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& epoch) {
     const Seconds passed = new_ ? Seconds(0) : difference(epoch.now, processed_);
     const MeasurementParameters& parameters = epoch.parameters;
-    processes_.code.advance(epoch.now, memory_of(code_loop_.bandwidth), passed);
+    processes_.code.advance(epoch.now, memory_of(deviations_.code_bandwidth), passed);
     processes_.multipath.advance(
         epoch.now, multipath_memory(parameters.multipath_model, input.arrival.direction.elevation, epoch.moving),
         passed);

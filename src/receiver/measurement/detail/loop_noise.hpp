@@ -130,6 +130,7 @@ SignalScintillation scintillation_at(const SignalScintillation& first, double fr
 /// Standard deviations of one signal's loops.
 struct LoopDeviations {
     Metres code;
+    Hertz code_bandwidth;  ///< that acted
     Angle phase;          ///< thermal
     Angle scintillation;  ///< of the phase
     Hertz frequency;
@@ -146,6 +147,7 @@ struct TrackedSignal {
     Hertz carrier;
     bool phase_locked = false;
     Seconds code_locked{1e6};  ///< for so long: the code loop begins wide, and narrows to its bandwidth
+    Seconds aided{1e6};        ///< by the carrier, for so long
 };
 LoopDeviations loop_deviations(const MeasurementParameters& parameters, const TrackedSignal& signal, DbHz cn0,
                                const SignalScintillation& scintillation);

@@ -58,6 +58,8 @@ public:
 
 private:
     void follow_cycles(const ChannelInput& input, const ChannelEpoch& epoch, bool had_phase);
+    /// How long the carrier has aided the code loop.
+    Seconds aided_for(DbHz cn0, const ChannelEpoch& epoch);
     void hear_echoes(const ChannelInput& input, const ChannelEpoch& epoch);
     [[nodiscard]] bool path_changed(const ChannelInput& input, const ChannelEpoch& epoch) const;
     void draw_errors(const ChannelInput& input, const ChannelEpoch& epoch);
@@ -75,6 +77,7 @@ private:
     std::optional<GpsTime> visited_;
     GpsTime processed_;  // until when the processes have run
     bool new_ = true;
+    GpsTime unaided_;  // when the carrier last did not aid the code loop
     LoopDeviations deviations_;
     SignalTerms terms_;
     GpsTime counting_since_;
