@@ -174,7 +174,7 @@ LoopDeviations loop_deviations(const MeasurementParameters& parameters, const Tr
     const CarrierToNoise power(cn0);
     CodeLoop code_loop = signal.code_loop;
     code_loop.bandwidth = acting_bandwidth(code_loop.bandwidth, parameters, signal);
-    LoopDeviations result{code_jitter(code_loop, power) * signal.jitter_ratio, code_loop.bandwidth,
+    LoopDeviations result{code_jitter(code_loop, power) * signal.jitter_ratio,
                           phase_jitter(parameters.phase_loop, power), scintillation.phase,
                           frequency_jitter(parameters.frequency_loop, power, threshold_factor)};
     if (scintillation.amplitude > 0) {

@@ -116,8 +116,8 @@ void SignalChannel::track(const ChannelInput& input, const ChannelEpoch& epoch) 
 }
 
 Seconds SignalChannel::aided_for(DbHz cn0, const ChannelEpoch& epoch) {
-    if (cn0 < epoch.parameters.aiding_threshold) unaided_ = epoch.now;
-    return difference(epoch.now, unaided_);
+    if (cn0 < epoch.parameters.aiding_threshold) unaided_at_ = epoch.now;
+    return difference(epoch.now, unaided_at_);
 }
 
 void SignalChannel::miss(const ChannelEpoch& epoch) { lock_.advance(epoch.parameters.acquisition, {}, epoch.now); }
@@ -130,7 +130,9 @@ void SignalChannel::forget() {
 void SignalChannel::draw_errors(const ChannelInput& input, const ChannelEpoch& epoch) {
     const Seconds passed = new_ ? Seconds(0) : difference(epoch.now, processed_);
     const MeasurementParameters& parameters = epoch.parameters;
-    processes_.code.advance(epoch.now, memory_of(deviations_.code_bandwidth), passed);
+    const bool aided = unaided_at_ < epoch.now;
+    const Hertz code_bandwidth = aided ? code_loop_.bandwidth : parameters.unaided_bandwidth;
+    processes_.code.advance(epoch.now, memory_of(code_bandwidth), passed);
     processes_.multipath.advance(
         epoch.now, multipath_memory(parameters.multipath_model, input.arrival.direction.elevation, epoch.moving),
         passed);

@@ -130,7 +130,6 @@ SignalScintillation scintillation_at(const SignalScintillation& first, double fr
 /// Standard deviations of one signal's loops.
 struct LoopDeviations {
     Metres code;
-    Hertz code_bandwidth;  ///< that acted
     Angle phase;          ///< thermal
     Angle scintillation;  ///< of the phase
     Hertz frequency;

@@ -77,7 +77,7 @@ private:
     std::optional<GpsTime> visited_;
     GpsTime processed_;  // until when the processes have run
     bool new_ = true;
-    GpsTime unaided_;  // when the carrier last did not aid the code loop
+    GpsTime unaided_at_;  // when the carrier last did not aid the code loop
     LoopDeviations deviations_;
     SignalTerms terms_;
     GpsTime counting_since_;
