@@ -23,6 +23,19 @@ tl::expected<Geodetic, std::string> place_from_degrees(double latitude, double l
     return Geodetic::degrees(latitude, std::remainder(longitude, 360), height_m);
 }
 
+tl::expected<std::vector<Geodetic>, std::string> corners_from_degrees(std::span<const double> numbers) {
+    if (numbers.size() % 2 != 0 || numbers.size() < 6)
+        return tl::make_unexpected(
+            fmt::format("holds {} numbers; expected at least three pairs of latitude and longitude", numbers.size()));
+    std::vector<Geodetic> corners;
+    for (std::size_t i = 0; i < numbers.size(); i += 2) {
+        const auto place = place_from_degrees(numbers[i], numbers[i + 1], 0);
+        if (!place) return tl::make_unexpected(place.error());
+        corners.push_back(*place);
+    }
+    return corners;
+}
+
 Position<Ecef> to_ecef(const Geodetic& place) {
     double x = 0;
     double y = 0;

@@ -4,7 +4,9 @@
 
 #include <tl/expected.hpp>
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "base/core/units.hpp"
 #include "base/geo/frames.hpp"
@@ -37,6 +39,9 @@ struct Geodetic {
 /// @param longitude degrees, −360 … 360; taken as −180 … 180
 /// @param height_m metres above the ellipsoid, −10 000 … 10 000 000: below any ground, below the satellites
 tl::expected<Geodetic, std::string> place_from_degrees(double latitude, double longitude, double height_m);
+
+/// The corners of a polygon at height 0 from latitude, longitude, latitude …, or what is wrong with them.
+tl::expected<std::vector<Geodetic>, std::string> corners_from_degrees(std::span<const double> numbers);
 
 Position<Ecef> to_ecef(const Geodetic& place);
 Geodetic to_geodetic(const Position<Ecef>& point);

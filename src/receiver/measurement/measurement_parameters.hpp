@@ -43,8 +43,8 @@ struct StatisticalMultipath {
 
 /// A receiver's front end, loops and oscillator.
 struct MeasurementParameters {
-    CodeLoop code_loop;  ///< for signals of 1.023 Mchip/s; the chip rate of others follows in proportion
-    DbHz aiding_threshold{-100};  ///< C/N0 from which the carrier aids the code loop
+    CodeLoop code_loop;            ///< for signals of 1.023 Mchip/s; the chip rate of others follows in proportion
+    DbHz aiding_threshold{-100};   ///< C/N0 from which the carrier aids the code loop
     Hertz unaided_bandwidth{0.5};  ///< of the code loop below it
     CarrierLoop phase_loop{Hertz(15), Seconds(0.02)};
     CarrierLoop frequency_loop{Hertz(5), Seconds(0.02)};

@@ -47,9 +47,7 @@ Json satellite_json(const SatelliteSeen& satellite) {
             {"az_deg", satellite.azimuth.deg()},
             {"el_deg", satellite.elevation.deg()},
             {"cn0_dbhz", std::move(cn0)},
-            {"line_of_sight", satellite.line_of_sight},
-            {"reflected", satellite.reflected},
-            {"blocked", satellite.blocked},
+            {"state", reception_names.at(static_cast<std::size_t>(satellite.state))},
             {"used", satellite.used},
             {"healthy", satellite.healthy},
             {"paths", satellite.paths}};

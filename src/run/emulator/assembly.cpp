@@ -263,6 +263,21 @@ std::unique_ptr<Geoid> find_geoid(const DataFolders& data, std::vector<std::stri
     return nullptr;
 }
 
+namespace {
+
+void warn_of_surroundings(const ModernSettings& modern, std::vector<std::string>& warnings) {
+    if (modern.propagation.channel_model.environment)
+        warnings.push_back(
+            fmt::format("model.modern.surroundings: '{}' adds no obstacles or echoes: the scene describes them",
+                        surroundings_names[static_cast<std::size_t>(modern.surroundings)]));
+    const auto& stretches = modern.propagation.stretches;
+    if (std::any_of(stretches.begin(), stretches.end(),
+                    [](const auto& s) { return s.channel.environment.has_value(); }))
+        warnings.emplace_back("surroundings: only their covers act: the scene describes obstacles and echoes");
+}
+
+}  // namespace
+
 std::vector<std::string> scenario_warnings(const Scenario& scenario, const Geoid* geoid) {
     std::vector<std::string> warnings = scenario.warnings;
     if (!scenario.model.sensor_model)
@@ -271,11 +286,7 @@ std::vector<std::string> scenario_warnings(const Scenario& scenario, const Geoid
         warnings.push_back(std::move(warning));
     if (scenario.scene.given() && !city_acts(scenario))
         warnings.emplace_back("scene: errors = \"none\" leaves the buildings out, whose echoes are errors");
-    const ModernSettings& modern = scenario.model.modern;
-    if (scenario.scene.given() && !scenario.model.sensor_model && modern.propagation.channel_model.environment)
-        warnings.push_back(
-            fmt::format("model.modern.surroundings: '{}' adds no obstacles or echoes: the scene describes them",
-                        surroundings_names[static_cast<std::size_t>(modern.surroundings)]));
+    if (scenario.scene.given() && !scenario.model.sensor_model) warn_of_surroundings(scenario.model.modern, warnings);
     return warnings;
 }
 

@@ -63,7 +63,12 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
                                                                           const NavigationSource& navigation,
                                                                           const WorldData& world) {
     ModernSettings settings = effective(scenario.model.modern);
-    if (scenario.scene.given()) settings.propagation.channel_model.environment.reset();
+    // The scene describes obstacles and echoes, but no tunnels.
+    if (scenario.scene.given()) {
+        settings.propagation.channel_model.environment.reset();
+        for (SurroundingsStretch& stretch : settings.propagation.stretches)
+            stretch.channel.environment.reset();
+    }
     ModernContext context;
     context.run = span_of_tables(scenario, world.start);
     context.atmosphere = scenario.atmosphere;

@@ -163,7 +163,10 @@ std::string satellite_rows(const Trace& trace) {
         const SignalTerms* terms = find_first_signal(trace.measurement.signals, sky.id);
         append_errors(rows, arrival, terms);
         status && status->residual ? rows.number(status->residual->value(), 4) : rows.nothing();
-        rows.number((arrival.false_range + (terms ? terms->false_code : Metres(0))).value(), 4).end_row();
+        rows.number((arrival.false_range + (terms ? terms->false_code : Metres(0))).value(), 4);
+        rows.text(reception_names.at(static_cast<std::size_t>(reception_of(arrival))));
+        rows.number(arrival.direct_loss.value(), 2);
+        rows.number((arrival.shadowing_loss - arrival.direct_loss).value(), 2).end_row();
     }
     return rows.take();
 }

@@ -152,7 +152,8 @@ constexpr auto reception_kinds = std::to_array<FaultKind>({
 }  // namespace
 
 std::vector<FaultKind> reception_fault_kinds() {
-    return all_kinds_of(FaultLayer::signals, {reception_kinds, {&jamming_fault, 1}, {&multipath_burst_fault, 1}});
+    return all_kinds_of(FaultLayer::signals,
+                        {reception_kinds, {&jamming_fault, 1}, {&multipath_burst_fault, 1}, {&surroundings_fault, 1}});
 }
 
 }  // namespace skyloop::inline run

@@ -33,10 +33,8 @@ SatelliteSeen satellite_seen(const EpochSeen& seen, std::size_t index) {
     shown.healthy = view.healthy;
     if (index < seen.trace.arrivals.satellites.size() && seen.trace.arrivals.satellites[index].id == view.id) {
         const Arrival& arrival = seen.trace.arrivals.satellites[index];
-        shown.line_of_sight = arrival.line_of_sight;
+        shown.state = reception_of(arrival);
         shown.paths = arrival.paths;
-        shown.blocked = arrival.paths == 0;
-        shown.reflected = !shown.blocked && arrival.reflections > 0;
     }
     const SatelliteStatus* status = reported_satellite(seen, view.id);
     shown.used = status != nullptr && status->used;

@@ -104,12 +104,11 @@ private:
 struct SatelliteSeen {
     SatelliteId id;
     Angle azimuth, elevation;
-    bool line_of_sight = true;
-    bool reflected = false;  ///< what is tracked has been reflected
-    bool blocked = false;    ///< nothing arrives
-    bool used = false;       ///< in the solution
-    bool healthy = true;     ///< by its broadcast
-    int paths = 1;           ///< rays that arrive
+    Reception state = Reception::line_of_sight;
+    bool used = false;    ///< in the solution
+    bool healthy = true;  ///< by its broadcast
+    int paths = 1;        ///< rays that arrive
+    [[nodiscard]] bool in_sight() const { return state == Reception::line_of_sight || state == Reception::shadowed; }
     /// C/N0 of each signal that the receiver tracks; of a sensor model the first signal's alone.
     std::vector<std::pair<Signal, DbHz>> signals;
 };

@@ -82,15 +82,8 @@ std::vector<std::array<double, 2>> polygon(const Parameters& keys, std::vector<P
     std::vector<std::array<double, 2>> corners;
     for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
         corners.push_back({numbers[i], numbers[i + 1]});
-    if (!numbers.empty() && (numbers.size() % 2 != 0 || corners.size() < 3))
-        mistakes.push_back({"when_inside", fmt::format("holds {} numbers; expected at least three pairs of latitude "
-                                                       "and longitude",
-                                                       numbers.size())});
-    for (const auto& [latitude, longitude] : corners)
-        if (const auto place = place_from_degrees(latitude, longitude, 0); !place) {
-            mistakes.push_back({"when_inside", place.error()});
-            break;
-        }
+    if (numbers.empty()) return corners;
+    if (const auto places = corners_from_degrees(numbers); !places) mistakes.push_back({"when_inside", places.error()});
     return corners;
 }
 

@@ -121,7 +121,8 @@ Json satellite_line(const SatelliteSeen& satellite) {
             {"cn0_dbhz", std::move(cn0)},
             {"used", satellite.used},
             {"healthy", satellite.healthy},
-            {"line_of_sight", satellite.line_of_sight},
+            {"line_of_sight", satellite.in_sight()},
+            {"state", reception_names.at(static_cast<std::size_t>(satellite.state))},
             {"paths", satellite.paths}};
 }
 

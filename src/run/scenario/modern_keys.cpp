@@ -55,8 +55,7 @@ void read_tracking(TableReader& table, MeasurementParameters& p) {
     table.quantity("code_bandwidth_hz", p.code_loop.bandwidth, {0.001, 100}, {"of the code loop", "0.5; survey 0.2"});
     table.quantity("aiding_threshold_dbhz", p.aiding_threshold, {-100, 100},
                    "C/N0 from which the carrier aids the code loop");
-    table.quantity("unaided_bandwidth_hz", p.unaided_bandwidth, {0.001, 100},
-                   "of the code loop below it");
+    table.quantity("unaided_bandwidth_hz", p.unaided_bandwidth, {0.001, 100}, "of the code loop below it");
     table.number("code_spacing_chips", p.code_loop.spacing_chips, {0.01, 1.99},
                  {"early to late; of faster codes in proportion", "0.25; survey 0.1"});
     table.quantity("front_end_bandwidth_hz", p.code_loop.front_end_bandwidth, {1e5, 1e9},
@@ -204,7 +203,7 @@ void read_solution(TableReader& table, ModernSettings& settings) {
 
 void read_car(TableReader& modern, ModernSettings& settings) {
     ChannelParameters& channel = settings.propagation.channel_model;
-    modern.where(channel.environment.has_value(), "with surroundings other than open-sky",
+    modern.where(channel.acts(), "with surroundings other than open-sky",
                  [&] { modern.boolean("car", settings.car, "the antenna is in a car, below its roof"); });
     if (settings.car) channel.roof = loss_of_car_roof;
 }

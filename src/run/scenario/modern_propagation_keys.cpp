@@ -116,35 +116,6 @@ void read_losses(TableReader& table, LossParameters& p) {
     table.quantity("antenna_film_db", p.antenna_film, {0, 100}, "water or ice on the antenna, 0 to 3 dB");
 }
 
-void read_channel_numbers(TableReader& table, ChannelParameters& p) {
-    table.number("distance_scale", p.distance_scale, {0.01, 100}, "of the environment's lengths of way");
-    table.number("bad_odds", p.bad_odds, {0, 1000}, "factor on the environment's odds of a bad state");
-    table.quantity("good_loss_db", p.good_loss, {-30, 100}, "more loss of the direct signal in the good state");
-    table.quantity("bad_loss_db", p.bad_loss, {-30, 100}, "more loss of the direct signal in the bad state");
-    table.number("shadowing_scale", p.shadowing_scale, {0, 10}, "of the environment's σ of shadowing within a state");
-    table.quantity("diffuse_db", p.diffuse, {-60, 30}, "more power of the scattered signal than the environment's");
-    table.degrees("reach_deg", p.reach, {1, 180}, "angle in the sky from which obstacles are independent");
-    table.quantity("creep_mps", p.creep, {0, 10}, "speed at which states and shadows pass an antenna at rest");
-    table.quantity("beat_hz", p.beat, {0, 100}, "σ of the echoes' frequencies at rest");
-    table.quantity("averaging_s", p.averaging, {0, 100}, "time over which a receiver averages fading");
-    table.quantity("echo_delay_m", p.echo_delay, {0, 1e4}, "mean excess of the echoes");
-    table.quantity("echo_length_m", p.echo_length, {0.1, 1e4}, "way over which an echo changes");
-    table.quantity("roof_db", p.roof, {0, 100}, {"loss towards the zenith by the roof of a car", "0; car = true 4"});
-}
-
-void read_channel(TableReader& table, ChannelParameters& p) {
-    table.word("environment",
-               {{"none", std::nullopt},
-                {"urban", P681Environment::urban},
-                {"suburban", P681Environment::suburban},
-                {"village", P681Environment::village},
-                {"wooded", P681Environment::wooded},
-                {"residential", P681Environment::residential}},
-               p.environment, {"statistics of ITU-R P.681-11; none: no channel", "that of surroundings"});
-    table.where(p.environment.has_value(), "with surroundings that have a channel, or with environment",
-                [&] { read_channel_numbers(table, p); });
-}
-
 template <class Pattern>
 struct PatternReading {
     ModernSettings& settings;
@@ -259,7 +230,7 @@ void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings,
     modern.table("losses", "rain, trees and water on the antenna",
                  [&](TableReader& t) { read_losses(t, p.loss_model); });
     modern.table("channel", "obstacles and echoes where there is no scene",
-                 [&](TableReader& t) { read_channel(t, p.channel_model); });
+                 [&](TableReader& t) { read_channel_keys(t, p.channel_model); });
     modern.table("link", "powers, antenna and noise", [&](TableReader& t) { read_link(t, settings, folder); });
     modern.table("interference", "a jammer", [&](TableReader& t) { read_interference(t, p.link); });
     modern.table("scintillation", "a restless ionosphere",

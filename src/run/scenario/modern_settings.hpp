@@ -10,6 +10,7 @@
 #include "receiver/measurement/measurement_parameters.hpp"
 #include "receiver/pvt/navigation_parameters.hpp"
 #include "world/propagation/modern_parameters.hpp"
+#include "world/propagation/surroundings.hpp"
 
 namespace skyloop::inline run {
 
@@ -20,26 +21,6 @@ enum class ModernPreset {
     phone,     ///< a telephone's receiver and antenna
 };
 inline constexpr std::string_view modern_preset_names[] = {"survey", "consumer", "phone"};
-
-/// What is around the antenna where no scene describes it.
-enum class Surroundings {
-    open_sky,        ///< a roof or a field
-    rural,           ///< a road between fields, single houses and trees
-    residential,     ///< a garden between houses and trees
-    forest,          ///< under trees
-    suburban_drive,  ///< roads through suburbs
-    urban,           ///< streets of a town
-    urban_canyon,    ///< a narrow street between high houses
-    indoor_window,   ///< a room, near its window
-};
-inline constexpr std::string_view surroundings_names[] = {"open-sky",       "rural", "residential",  "forest",
-                                                          "suburban-drive", "urban", "urban-canyon", "indoor-window"};
-
-/// Towards the zenith. Fitted to a record of one car (tools/validate, car).
-inline constexpr Decibels loss_of_car_roof{4};
-
-/// The channel's numbers for surroundings; of an open sky it has no environment.
-ChannelParameters channel_of(Surroundings surroundings);
 
 /// Every number of the modern profile. One that is made by itself has no preset's numbers: take it from of().
 struct ModernSettings {

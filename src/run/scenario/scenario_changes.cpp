@@ -93,7 +93,8 @@ bool is_place(std::string_view part) {
 
 // A list is not made: what its entries would be nobody has said.
 bool lacks_list(const toml::node& parent, std::string_view part, std::string_view next) {
-    static constexpr std::array<std::string_view, 5> lists{"receiver", "output", "fault", "command", "expect"};
+    static constexpr std::array<std::string_view, 6> lists{"receiver", "output",  "surroundings",
+                                                           "fault",    "command", "expect"};
     const toml::table* table = parent.as_table();
     if (table == nullptr || table->contains(part)) return false;
     return is_place(next) || std::find(lists.begin(), lists.end(), part) != lists.end();

@@ -179,6 +179,18 @@ std::optional<ParameterValue> TableReader::value(std::string_view key) {
     return std::nullopt;
 }
 
+std::optional<std::vector<Geodetic>> TableReader::polygon(std::string_view key, KeyText text) {
+    if (recording()) note(key, text, {.type = KeyType::number_groups, .least = -360, .most = 360, .count_least = 6});
+    const auto found = value(key);
+    if (!found) return std::nullopt;
+    const auto* numbers = std::get_if<std::vector<double>>(&*found);
+    if (numbers == nullptr)
+        return mistake(key, "is no list of pairs; expected [[latitude, longitude], …]"), std::nullopt;
+    auto corners = corners_from_degrees(*numbers);
+    if (!corners) return mistake(key, corners.error()), std::nullopt;
+    return std::move(*corners);
+}
+
 const toml::node* TableReader::node(std::string_view key, KeyType type, KeyText text) {
     if (recording()) note(key, text, {.type = type, .count_least = 1});
     return find(key);

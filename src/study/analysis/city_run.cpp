@@ -1,6 +1,7 @@
 #include "study/analysis/city_run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,11 +26,18 @@ public:
         width_ = cells_.size();
         std::vector<std::size_t> places;
         for (const std::string_view column : columns) {
-            const auto found = std::find(cells_.begin(), cells_.end(), column);
-            if (found == cells_.end()) return refusal(fmt::format("no column {} in the header", column));
-            places.push_back(static_cast<std::size_t>(found - cells_.begin()));
+            const auto place = column_of(column);
+            if (!place) return refusal(fmt::format("no column {} in the header", column));
+            places.push_back(*place);
         }
         return places;
+    }
+
+    // While the header is the present line.
+    [[nodiscard]] std::optional<std::size_t> column_of(std::string_view name) const {
+        const auto found = std::find(cells_.begin(), cells_.end(), name);
+        if (found == cells_.end()) return std::nullopt;
+        return static_cast<std::size_t>(found - cells_.begin());
     }
 
     // Goes to the next line that is not empty; false at the end of the text.
@@ -73,10 +81,7 @@ private:
     std::size_t line_ = 0, width_ = 0;
 };
 
-struct ReceptionCounts {
-    int line_of_sight = 0, reflected = 0, blocked = 0;
-};
-using CountsByTime = std::map<std::string, ReceptionCounts, std::less<>>;
+using CountsByTime = std::map<std::string, decltype(CityRunEpoch::received), std::less<>>;
 
 // Numbers of a row, or what is wrong with one of them.
 Result<std::vector<std::optional<double>>> row_numbers(const NamedTable& table, std::span<const std::size_t> columns,
@@ -91,19 +96,28 @@ Result<std::vector<std::optional<double>>> row_numbers(const NamedTable& table, 
     return numbers;
 }
 
+Result<Reception> named_reception(const NamedTable& table, std::size_t column) {
+    const auto name = std::find(reception_names.begin(), reception_names.end(), table.cell(column));
+    if (name != reception_names.end()) return static_cast<Reception>(name - reception_names.begin());
+    return table.refusal(
+        fmt::format("state is '{}'; expected one of {}", table.cell(column), fmt::join(reception_names, " ")));
+}
+
 Result<CountsByTime> counted_receptions(NamedTable table, Angle lowest) {
     const auto columns = table.header({"time_utc", "elevation_deg", "line_of_sight", "paths"});
     if (!columns) return fail(columns.error());
+    const auto told = table.column_of("state");
     CountsByTime counts;
     while (table.next()) {
         const auto numbers = row_numbers(table, std::span(*columns).subspan(1), false);
         if (!numbers) return fail(numbers.error());
         if (*(*numbers)[0] < lowest.deg()) continue;
-        ReceptionCounts& count = counts[std::string(table.cell((*columns)[0]))];
-        if (*(*numbers)[1] != 0)
-            ++count.line_of_sight;
-        else
-            ++(*(*numbers)[2] > 0 ? count.reflected : count.blocked);
+        auto& count = counts[std::string(table.cell((*columns)[0]))];
+        const bool sight = *(*numbers)[1] != 0, some = *(*numbers)[2] > 0;
+        const auto seen = sight ? Reception::line_of_sight : some ? Reception::reflected : Reception::blocked;
+        const auto reception = told ? named_reception(table, *told) : Result<Reception>(seen);
+        if (!reception) return fail(reception.error());
+        ++count.at(static_cast<std::size_t>(*reception));
     }
     return counts;
 }
@@ -155,9 +169,7 @@ Result<CityRun> parse_city_run(std::string_view fixes, std::string_view satellit
         start = start.value_or(*time);
         epoch->since_start = difference(*time, *start);
         if (const auto found = counts->find(table.cell(columns->front())); found != counts->end()) {
-            epoch->line_of_sight = found->second.line_of_sight;
-            epoch->reflected = found->second.reflected;
-            epoch->blocked = found->second.blocked;
+            epoch->received = found->second;
         }
         run.epochs.push_back(*epoch);
     }

@@ -11,16 +11,16 @@
 #include "base/core/units.hpp"
 #include "base/geo/geodetic.hpp"
 #include "base/time/utc_time.hpp"
+#include "world/flow/arrivals.hpp"
 
 namespace skyloop::inline study {
 
 /// One epoch of a run.
 struct CityRunEpoch {
     Seconds since_start;
-    Geodetic truth;                  ///< where the antenna was
-    std::optional<Metres> error;     ///< horizontal; nothing without a fix
-    int line_of_sight = 0;           ///< satellites above the lowest elevation, directly seen
-    int reflected = 0, blocked = 0;  ///< that came by reflections alone; of which nothing came
+    Geodetic truth;                                      ///< where the antenna was
+    std::optional<Metres> error;                         ///< horizontal; nothing without a fix
+    std::array<int, reception_names.size()> received{};  ///< satellites above the lowest elevation, by Reception
 };
 
 /// A run, in the order of its epochs.

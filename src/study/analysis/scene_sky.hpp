@@ -8,17 +8,13 @@
 
 #include "base/core/units.hpp"
 #include "base/geo/geodetic.hpp"
+#include "world/flow/arrivals.hpp"
 #include "world/flow/sky_view.hpp"
 #include "world/gnss/dop.hpp"
 #include "world/scene/scene_path.hpp"
 #include "world/scene/urban_scene.hpp"
 
 namespace skyloop::inline study {
-
-/// How a satellite's signal arrives.
-enum class Reception : std::uint8_t { line_of_sight, reflected, blocked };
-
-inline constexpr std::array reception_names{"line_of_sight", "reflected", "blocked"};
 
 /// One reflected path with its geometry; lists go from the antenna outwards.
 struct ReflectedPath {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "detail/plan_view.hpp"
 #include "detail/plot_style.hpp"
@@ -19,17 +21,21 @@ constexpr std::size_t most_bins = 850;
 // One column of the strips: several epochs where there are more than pixels.
 struct StripBin {
     double begin = 0, end = 0;  // s since the start
-    double line_of_sight = 0, reflected = 0, blocked = 0;
+    std::array<double, reception_names.size()> received{};
     std::optional<double> error;  // m, the largest
     std::size_t epochs = 0;
     void add(const CityRunEpoch& epoch) {
-        line_of_sight += epoch.line_of_sight;
-        reflected += epoch.reflected;
-        blocked += epoch.blocked;
+        for (std::size_t i = 0; i < received.size(); ++i)
+            received.at(i) += epoch.received.at(i);
         if (epoch.error) error = std::max(error.value_or(0), epoch.error->value());
         ++epochs;
     }
-    [[nodiscard]] double mean(double sum) const { return sum / static_cast<double>(std::max<std::size_t>(epochs, 1)); }
+    // Of the first so many kinds of reception together, a mean.
+    [[nodiscard]] double up_to(std::size_t kinds) const {
+        const double sum =
+            std::accumulate(received.begin(), received.begin() + static_cast<std::ptrdiff_t>(kinds), 0.0);
+        return sum / static_cast<double>(std::max<std::size_t>(epochs, 1));
+    }
 };
 
 std::vector<StripBin> strip_bins(const CityRun& run) {
@@ -70,38 +76,33 @@ void draw_strip_frame(SvgDocument& svg, const Strip& strip, const std::string& n
                     "middle");
 }
 
+double opacity_of(Reception kind) { return kind == Reception::blocked ? 0.25 : 0.85; }
+
 // The area between two stacked counts.
-void draw_stack(SvgDocument& svg, const Strip& strip, const std::vector<StripBin>& bins, int layer) {
-    const auto level = [&](const StripBin& bin, int layers) {
-        double sum = 0;
-        if (layers > 0) sum += bin.line_of_sight;
-        if (layers > 1) sum += bin.reflected;
-        if (layers > 2) sum += bin.blocked;
-        return bin.mean(sum);
-    };
+void draw_stack(SvgDocument& svg, const Strip& strip, const std::vector<StripBin>& bins, std::size_t layer) {
     SvgPath path;
-    path.move_to(strip.at(bins.front().begin, level(bins.front(), layer)));
+    path.move_to(strip.at(bins.front().begin, bins.front().up_to(layer)));
     for (const StripBin& bin : bins)
-        path.line_to(strip.at(bin.begin, level(bin, layer + 1))).line_to(strip.at(bin.end, level(bin, layer + 1)));
+        path.line_to(strip.at(bin.begin, bin.up_to(layer + 1))).line_to(strip.at(bin.end, bin.up_to(layer + 1)));
     for (auto bin = bins.rbegin(); bin != bins.rend(); ++bin)
-        path.line_to(strip.at(bin->end, level(*bin, layer))).line_to(strip.at(bin->begin, level(*bin, layer)));
-    svg.path(path.close(),
-             {.fill = style::reception_colour(static_cast<Reception>(layer)), .opacity = layer == 2 ? 0.25 : 0.85});
+        path.line_to(strip.at(bin->end, bin->up_to(layer))).line_to(strip.at(bin->begin, bin->up_to(layer)));
+    const auto kind = static_cast<Reception>(layer);
+    svg.path(path.close(), {.fill = style::reception_colour(kind), .opacity = opacity_of(kind)});
 }
 
 void draw_counts(SvgDocument& svg, const std::vector<StripBin>& bins, double top) {
     Strip strip{top, 130, bins.back().end, 1};
     for (const StripBin& bin : bins)
-        strip.highest = std::max(strip.highest, bin.mean(bin.line_of_sight + bin.reflected + bin.blocked));
+        strip.highest = std::max(strip.highest, bin.up_to(reception_names.size()));
     svg.begin_group("counts");
     draw_strip_frame(svg, strip, "Satellites", false);
-    for (int layer = 0; layer < 3; ++layer)
+    for (std::size_t layer = 0; layer < reception_names.size(); ++layer)
         draw_stack(svg, strip, bins, layer);
     double x = strip_left + 110;
-    for (const Reception kind : {Reception::line_of_sight, Reception::reflected, Reception::blocked}) {
+    for (const Reception kind :
+         {Reception::line_of_sight, Reception::shadowed, Reception::reflected, Reception::blocked}) {
         const std::string word(style::reception_word(kind));
-        svg.rectangle({x, top - 17}, {12, 12}, 2,
-                      {.fill = style::reception_colour(kind), .opacity = kind == Reception::blocked ? 0.25 : 0.85});
+        svg.rectangle({x, top - 17}, {12, 12}, 2, {.fill = style::reception_colour(kind), .opacity = opacity_of(kind)});
         style::note(svg, {x + 18, top - 11}, word, 11.5);
         x += 18 + style::text_width(word, 11.5) + 18;
     }
@@ -162,7 +163,7 @@ void draw_track(SvgDocument& svg, const CityRun& run, const std::vector<Eigen::V
     whole.move_to(last);
     for (std::size_t i = 1; i < points.size(); ++i) {
         const SvgPoint p = view.at(points[i]);
-        const int count = run.epochs[i].line_of_sight;
+        const int count = run.epochs[i].received.front();
         const bool changes = pieces.empty() || pieces.back().first != count;
         if (!changes && std::hypot(p.x - last.x, p.y - last.y) < 0.33) continue;
         if (changes) pieces.emplace_back(count, SvgPath().move_to(last));
@@ -214,7 +215,7 @@ std::string city_run_plot_svg(const CityRun& run, const UrbanScene* scene, const
         svg.rectangle(view.corner(), view.size(), 0, {.fill = style::panel, .stroke = style::grid});
     int most = 0;
     for (const CityRunEpoch& epoch : run.epochs)
-        most = std::max(most, epoch.line_of_sight);
+        most = std::max(most, epoch.received.front());
     draw_track(svg, run, points, view, most);
     draw_scale_and_north(svg, view);
     draw_count_legend(svg, {40, 706}, most);

@@ -1,6 +1,8 @@
 /// What reaches the antenna.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -70,6 +72,8 @@ struct Arrival {
     Decibels rain_loss;
     Decibels foliage_loss;
     Decibels shadowing_loss;  ///< of the tracked ray by surroundings that no scene describes; below 0: a gain
+    Decibels direct_loss;     ///< what obstacles take of it from the direct ray; the rest is fading
+    bool shadowed = false;    ///< they stand before the direct ray
     Decibels iono_loss;
     Decibels reflection_loss;            ///< of the tracked ray, by reflections and at edges
     Decibels antenna_gain;               ///< of the receiving antenna in this direction, dBic
@@ -80,6 +84,18 @@ struct Arrival {
     std::optional<DbHz>
         cn0;  ///< of the first signal; nothing until a link budget has been made, or for a hidden satellite
 };
+
+/// How a satellite is received, by its tracked ray.
+enum class Reception : std::uint8_t { line_of_sight, shadowed, reflected, blocked };
+inline constexpr std::array reception_names{"line_of_sight", "shadowed", "reflected", "blocked"};
+
+/// Shadowed: by obstacles, or by 3 dB of foliage. Blocked: nothing arrives, or 40 dB less.
+inline Reception reception_of(const Arrival& arrival) {
+    constexpr Decibels thick_foliage{3}, next_to_nothing{40};
+    if (arrival.paths == 0 || arrival.shadowing_loss >= next_to_nothing) return Reception::blocked;
+    if (!arrival.line_of_sight) return Reception::reflected;
+    return arrival.shadowed || arrival.foliage_loss >= thick_foliage ? Reception::shadowed : Reception::line_of_sight;
+}
 
 /// One arrival for each satellite of the SkyView, in its order.
 struct Arrivals {

@@ -40,9 +40,10 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const Mod
     effects.push_back(std::make_unique<FoliageLoss>(parameters.loss_model, parameters.foliage));
     effects.push_back(std::make_unique<ScintillationIndices>(parameters.scintillation_model, parameters.scintillation,
                                                              context.leap_seconds));
-    if (parameters.channel_model.environment)
-        effects.push_back(
-            std::make_unique<SurroundingsEffect>(parameters.channel_model, parameters.channel, context.seed));
+    if (parameters.channel_model.acts() || !parameters.stretches.empty())
+        effects.push_back(std::make_unique<SurroundingsEffect>(
+            SurroundingsParameters{parameters.channel_model, parameters.stretches, context.run.first},
+            parameters.channel, context.seed));
     effects.push_back(std::make_unique<ModernLinkBudget>(parameters, context.seed));
     return effects;
 }

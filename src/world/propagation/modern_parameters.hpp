@@ -12,6 +12,7 @@
 #include "world/gnss/signal.hpp"
 #include "world/propagation/antenna_and_noise.hpp"
 #include "world/propagation/channel_parameters.hpp"
+#include "world/propagation/surroundings_stretch.hpp"
 
 namespace skyloop::inline world {
 
@@ -186,6 +187,7 @@ struct ModernPropagationParameters {
     TroposphereParameters troposphere_model;
     LossParameters loss_model;
     ChannelParameters channel_model;
+    std::vector<SurroundingsStretch> stretches;  ///< with surroundings of their own
     ModernLinkParameters link;
     ScintillationParameters scintillation_model;
 

@@ -107,6 +107,7 @@ EchoPlace echo_at(std::uint64_t key, std::size_t group, const Eigen::Vector2d& p
 
 StateChannel::StateChannel(const ChannelParameters& parameters, std::uint64_t seed)
     : parameters_(parameters),
+      drawn_street_(Angle::radians(std::numbers::pi * uniform_of_bits(noise_key(seed, "channel.street")))),
       seed_(noise_key(seed, "channel.echoes")),
       short_key_(noise_key(seed, "channel.short_obstacles")),
       long_key_(noise_key(seed, "channel.long_obstacles")),
@@ -161,6 +162,14 @@ double StateChannel::changes_per_metre(Angle elevation) const {
     const ElevationNumbers n = numbers_at(elevation);
     return std::sqrt(curvature_of(n.short_share)) / (2 * std::numbers::pi) * std::exp(-n.threshold * n.threshold / 2) /
            parameters_.distance_scale;
+}
+
+double StateChannel::wall_threshold(const SkyDirection& direction, const ChannelPlace& place) const {
+    constexpr double least_across = 0.17, most = 3;  // sine of 10°; deviations of the field
+    const Angle street = parameters_.street.value_or(place.street.value_or(drawn_street_));
+    const double across = std::max(std::abs(std::sin((direction.azimuth - street).rad())), least_across);
+    const double top = std::atan(std::tan(parameters_.wall.rad()) * across);
+    return std::clamp((top - direction.elevation.rad()) / parameters_.wall_spread.rad(), -most, most);
 }
 
 StateChannel::Rays StateChannel::rays_of(SatelliteId satellite) const {
@@ -219,7 +228,8 @@ void StateChannel::set_echoes(ChannelSample& sample, SatelliteId satellite, cons
 }
 
 ChannelSample StateChannel::at(SatelliteId satellite, const SkyDirection& direction, const ChannelPlace& place) {
-    const ElevationNumbers n = numbers_at(direction.elevation);
+    ElevationNumbers n = numbers_at(direction.elevation);
+    if (parameters_.wall > Angle()) n.threshold = wall_threshold(direction, place);
     // Equal angles of the sky are equal distances from the zenith outwards.
     const double zenith = (90 - direction.elevation.deg()) / (parameters_.reach.deg() / noise_reach_cells);
     const double across = zenith * std::sin(direction.azimuth.rad()), up = zenith * std::cos(direction.azimuth.rad());

@@ -6,6 +6,7 @@
 #include <array>
 #include <complex>
 #include <cstdint>
+#include <optional>
 
 #include "base/time/gps_time.hpp"
 #include "world/flow/arrivals.hpp"
@@ -21,6 +22,7 @@ struct ChannelPlace {
     Eigen::Vector2d east_north = Eigen::Vector2d::Zero();  ///< on a plane that all antennas share, m
     Eigen::Vector2d velocity = Eigen::Vector2d::Zero();    ///< on it, m/s
     GpsTime time;
+    std::optional<Angle> street{};  ///< azimuth of the street that it moves along
 };
 
 /// One group of scattered rays.
@@ -48,6 +50,8 @@ struct ChannelSample {
 /// The state is bad where a Gaussian field over direction and place is below the threshold that gives P(bad); the
 /// field's curvature gives the table's number of changes per metre (Rice 1945). So satellites near to each other in the
 /// sky and antennas of one vehicle meet the same obstacles, and nothing depends on what was asked before.
+/// Between the walls of a street the threshold follows from their height in place of the table's P(bad): that of a long
+/// row of houses, whose tops stand at atan(tan h |sin Δ|) in a direction Δ off the street; of its ends, as at 10°.
 /// Of the durations, the mean is the table's and the distribution is the field's. M_A runs from one state's to the
 /// other's over the ramp, on average; Σ_A and MP follow M_A.
 ///
@@ -80,12 +84,14 @@ private:
     using Rays = std::array<std::array<Ray, rays_per_echo>, ChannelSample::echo_count>;
 
     [[nodiscard]] ElevationNumbers numbers_at(Angle elevation) const;
+    [[nodiscard]] double wall_threshold(const SkyDirection& direction, const ChannelPlace& place) const;
     [[nodiscard]] Rays rays_of(SatelliteId satellite) const;
     void set_echoes(ChannelSample& sample, SatelliteId satellite, const ChannelPlace& place);
     void set_gain(ChannelEcho& echo, const std::array<Ray, rays_per_echo>& rays, const ChannelPlace& place) const;
 
     static constexpr std::size_t nodes = 19;  // each 5°
     ChannelParameters parameters_;
+    Angle drawn_street_;
     double correlation_cell_;  // m
     std::array<ElevationNumbers, nodes> numbers_{};
     std::uint64_t seed_, short_key_, long_key_, level_key_, shadowing_key_;

@@ -26,12 +26,26 @@ TEST(CityRun, counts_what_arrives_at_each_epoch) {
     ASSERT_EQ(run->epochs.size(), 2u);
     EXPECT_EQ(run->start, "2026-01-01T00:00:00.000Z");
     EXPECT_EQ(run->epochs[0].error, Metres(5));
-    EXPECT_EQ(run->epochs[0].line_of_sight, 1);
-    EXPECT_EQ(run->epochs[0].reflected, 1);
-    EXPECT_EQ(run->epochs[0].blocked, 1);
+    EXPECT_EQ(run->epochs[0].received, (std::array{1, 0, 1, 1}));
     EXPECT_DOUBLE_EQ(run->epochs[1].since_start.value(), 1.5);
     EXPECT_FALSE(run->epochs[1].error);
     EXPECT_NEAR(run->epochs[1].truth.latitude.deg(), 46.5, 1e-12);
+}
+
+TEST(CityRun, counts_states_where_the_table_has_them) {
+    const auto run = parse_city_run(run_fixes,
+                                    "time_utc,satellite,elevation_deg,line_of_sight,paths,state\n"
+                                    "2026-01-01T00:00:00.000Z,G01,40,1,1,shadowed\n",
+                                    "run");
+    ASSERT_TRUE(run) << run.error().message;
+    EXPECT_EQ(run->epochs[0].received, (std::array{0, 1, 0, 0}));
+    const auto odd = parse_city_run(run_fixes,
+                                    "time_utc,satellite,elevation_deg,line_of_sight,paths,state\n"
+                                    "2026-01-01T00:00:00.000Z,G01,40,1,1,dim\n",
+                                    "run");
+    ASSERT_FALSE(odd);
+    EXPECT_EQ(odd.error().message,
+              "run/satellites.csv:2: state is 'dim'; expected one of line_of_sight shadowed reflected blocked");
 }
 
 TEST(CityRun, refuses_tables_with_file_and_line) {

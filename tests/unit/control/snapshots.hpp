@@ -38,7 +38,7 @@ inline StatusSnapshot small_snapshot() {
     SatelliteSeen satellite;
     satellite.id = {Constellation::gps, 7};
     satellite.elevation = Angle::degrees(40);
-    satellite.reflected = true;
+    satellite.state = Reception::reflected;
     satellite.signals = {{Signal::l1, DbHz(44.5)}};
     receiver.satellites.push_back(satellite);
     WireStatus wire;

@@ -24,7 +24,7 @@ TEST(StatusJson, TellsTimesPlacesSatellitesAndWires) {
     EXPECT_EQ(receiver["error"]["up_m"], 2.0);
     EXPECT_EQ(receiver["satellites"][0]["id"], "G07");
     EXPECT_EQ(receiver["satellites"][0]["cn0_dbhz"]["1C"], 44.5);
-    EXPECT_EQ(receiver["satellites"][0]["reflected"], true);
+    EXPECT_EQ(receiver["satellites"][0]["state"], "reflected");
     EXPECT_EQ(receiver["wires"][0]["bytes_out"], 1234);
     EXPECT_EQ(receiver["wires"][0]["baud"], 9600);
     EXPECT_EQ(json["timeline"][0]["begins_s"], 10.0);

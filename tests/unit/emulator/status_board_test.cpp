@@ -58,8 +58,7 @@ TEST(StatusBoard, ShowsAnEpoch) {
     EXPECT_EQ(receiver.satellites_used, 1);
     ASSERT_EQ(receiver.satellites.size(), 1U);
     EXPECT_TRUE(receiver.satellites[0].used);
-    EXPECT_TRUE(receiver.satellites[0].reflected);
-    EXPECT_FALSE(receiver.satellites[0].line_of_sight);
+    EXPECT_EQ(receiver.satellites[0].state, Reception::reflected);
     ASSERT_EQ(receiver.satellites[0].signals.size(), 1U);
     EXPECT_EQ(receiver.satellites[0].signals[0].second.value(), 41);
 }

@@ -133,8 +133,7 @@ TEST(CityRunPlot, is_well_formed_for_long_runs_and_single_epochs) {
         CityRunEpoch epoch;
         epoch.since_start = Seconds(i);
         epoch.truth = Geodetic::degrees(46.4775 + 1e-6 * i, 30.7326 + 1e-7 * i * (i % 10), 52);
-        epoch.line_of_sight = i / 500;
-        epoch.reflected = i % 3;
+        epoch.received = {i / 500, 0, i % 3, 0};
         if (i % 50 > 5) epoch.error = Metres(i % 40);
         run.epochs.push_back(epoch);
     }

@@ -17,29 +17,26 @@ function strongest(satellite) {
     return values.length ? Math.max(...values) : NaN;
 }
 
-/** How a satellite's signal comes: "sight", "reflected" or "blocked". */
-export function sightOf(satellite) {
-    if (satellite.blocked) return "blocked";
-    return satellite.reflected || !satellite.line_of_sight ? "reflected" : "sight";
-}
+// How a satellite's signal comes, by its `state`.
+const stateWords = { line_of_sight: "line of sight", shadowed: "shadowed", reflected: "reflected", blocked: "blocked" };
 
-const sightWords = { sight: "line of sight", reflected: "reflected", blocked: "blocked" };
-
-function shape(sight, attributes) {
-    if (sight === "sight") return draw("circle", { r: size, ...attributes });
+function shape(state, attributes) {
+    if (state === "line_of_sight") return draw("circle", { r: size, ...attributes });
+    const half = size * 0.9;
+    if (state === "shadowed")
+        return draw("path", { d: `M${-half},${-half} H${half} V${half} H${-half} Z`, ...attributes });
     const s = size * 1.25;
-    if (sight === "reflected") return draw("path", { d: `M0,${-s} L${s},0 L0,${s} L${-s},0 Z`, ...attributes });
+    if (state === "reflected") return draw("path", { d: `M0,${-s} L${s},0 L0,${s} L${-s},0 Z`, ...attributes });
     const c = size * 0.62;
     return draw("path", { d: `M${-c},${-c} L${c},${c} M${c},${-c} L${-c},${c}`, ...attributes });
 }
 
 function satelliteMark(satellite) {
     const { x, y } = place(satellite);
-    const sight = sightOf(satellite);
     const cn0 = strongest(satellite);
     const told = [
         satellite.id,
-        sightWords[sight],
+        stateWords[satellite.state],
         Number.isFinite(cn0) ? `${cn0.toFixed(0)} dB-Hz` : "not tracked",
         satellite.paths > 1 ? `${satellite.paths} paths` : null,
         satellite.used ? "used" : "not used",
@@ -50,10 +47,10 @@ function satelliteMark(satellite) {
     label.textContent = satellite.id;
     const title = draw("title");
     title.textContent = told.filter(Boolean).join(", ");
-    const group = draw("g", { transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})`, class: `sat sat-${sight}` });
+    const group = draw("g", { transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})`, class: `sat sat-${satellite.state}` });
     group.append(title);
     if (satellite.used) group.append(draw("circle", { r: size + 2.6, class: "sat-used" }));
-    group.append(shape(sight, { class: `cn0-${cn0Class(cn0)}` }), label);
+    group.append(shape(satellite.state, { class: `cn0-${cn0Class(cn0)}` }), label);
     if (!satellite.healthy) group.append(draw("path", { d: `M${-size},${size} L${size},${-size}`, class: "sat-ill" }));
     return group;
 }
@@ -92,8 +89,8 @@ export function setUpSkyPlot() {
         legend.append(legendItem([draw("circle", { r: 8, class: `cn0-${index}` })], one.name)),
     );
     legend.append(make("li", { class: "break" }));
-    for (const [sight, text] of Object.entries(sightWords)) {
-        const symbol = draw("g", { class: `sat-${sight}` }, shape(sight, { class: "cn0-none" }));
+    for (const [state, text] of Object.entries(stateWords)) {
+        const symbol = draw("g", { class: `sat-${state}` }, shape(state, { class: "cn0-none" }));
         legend.append(legendItem([symbol], text));
     }
     legend.append(legendItem([draw("circle", { r: size + 2.6, class: "sat-used" })], "used"));

@@ -26,7 +26,7 @@ inline constexpr std::string_view satellites_header =
     "gas_loss_db,cloud_loss_db,rain_loss_db,cn0_dbhz,pseudorange_m,used,"
     "orbit_clock_error_m,multipath_m,code_noise_m,phase_noise_m,doppler_noise_hz,foliage_loss_db,antenna_gain_dbic,"
     "power_offset_db,interference_loss_db,amplitude_scintillation,phase_scintillation_rad,residual_m,"
-    "false_range_m\n";
+    "false_range_m,state,shadowing_db,fading_db\n";
 
 /// The row of fixes.csv of one epoch; without a position its columns are empty.
 std::string fix_row(const Trace& trace);

@@ -36,6 +36,7 @@ constexpr std::array<FaultKind, n> without_strength(std::array<FaultKind, n> kin
 
 extern const FaultKind jamming_fault;            ///< by J/S, or by where the jammer stands and how strong it is
 extern const FaultKind multipath_burst_fault;    ///< echoes that come and go
+extern const FaultKind surroundings_fault;       ///< what stands around the antenna
 std::vector<FaultKind> reception_fault_kinds();  ///< outage, antenna, interference
 std::vector<FaultKind> spoofing_fault_kinds();   ///< false signals
 std::vector<FaultKind> satellite_fault_kinds();  ///< clocks, records, the air

@@ -271,6 +271,8 @@ public:
     /// The path of a file, which has a name. @param folder to which it is relative
     void file_path(std::string_view key, const std::filesystem::path& folder, std::filesystem::path& value,
                    KeyText text = {});
+    /// The corners of a polygon, [[latitude, longitude], …] in degrees.
+    std::optional<std::vector<Geodetic>> polygon(std::string_view key, KeyText text = {});
     /// Whatever stands there, as faults and commands take it; a list of pairs of numbers becomes one list. Nothing, and
     /// a mistake, for a table or a list that is neither of numbers, pairs of numbers nor texts.
     std::optional<ParameterValue> value(std::string_view key);

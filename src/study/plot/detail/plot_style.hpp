@@ -30,6 +30,7 @@ inline constexpr std::string_view unhealthy = "#8b95a1";
 inline constexpr std::string_view foliage = "#a9cf9d";
 inline constexpr std::string_view foliage_edge = "#6fa563";
 inline constexpr std::string_view line_of_sight = "#0a8f72";
+inline constexpr std::string_view shadowed = "#86b32d";
 inline constexpr std::string_view reflected = "#e08a00";
 inline constexpr std::string_view blocked = "#b3403a";
 inline constexpr std::string_view skyline = "#c3cad3";
@@ -41,12 +42,12 @@ constexpr std::string_view constellation_colour(Constellation constellation) {
     return colours[static_cast<std::size_t>(constellation)];
 }
 
-/// What a city does to a satellite: by colour, and by word.
+/// How a satellite is received: by colour, and by word.
 constexpr std::string_view reception_colour(Reception reception) {
-    return std::array{line_of_sight, reflected, blocked}[static_cast<std::size_t>(reception)];
+    return std::array{line_of_sight, shadowed, reflected, blocked}[static_cast<std::size_t>(reception)];
 }
 constexpr std::string_view reception_word(Reception reception) {
-    return std::array<std::string_view, 3>{"line of sight", "reflected",
+    return std::array<std::string_view, 4>{"line of sight", "shadowed", "reflected",
                                            "blocked"}[static_cast<std::size_t>(reception)];
 }
 

@@ -1,6 +1,6 @@
-#include "run/scenario/modern_settings.hpp"
+#include "world/propagation/surroundings.hpp"
 
-namespace skyloop::inline run {
+namespace skyloop::inline world {
 namespace {
 
 // Of forest, suburban-drive, residential and urban: fitted to one record each, by tools/validate (trees, car, garden)
@@ -38,10 +38,34 @@ ChannelParameters fitted_channel_of(Surroundings surroundings) {
     return p;
 }
 
+// Under or behind what lets nothing or little through.
+ChannelParameters covered_channel_of(Surroundings surroundings) {
+    ChannelParameters p;
+    if (surroundings == Surroundings::tunnel) {
+        p.cover = Decibels(60);
+        return p;
+    }
+    p = fitted_channel_of(Surroundings::urban);
+    if (surroundings == Surroundings::garage) {
+        p.distance_scale = 0.3;
+        p.cover = Decibels(22);
+        p.echo_delay = Metres(15);
+    } else {  // a room, near its window
+        p.bad_odds = 5;
+        p.distance_scale = 0.5;
+        p.good_loss = Decibels(8);
+        p.bad_loss = Decibels(5);
+        p.diffuse = Decibels(-6);
+        p.reach = Angle::degrees(30);
+        p.echo_delay = Metres(10);
+    }
+    return p;
+}
+
 }  // namespace
 
-// The environments are those of P.681-11. The numbers of rural, urban-canyon and indoor-window are invented: held
-// against no record, they follow from the fitted ones and from what the words mean.
+// The environments are those of P.681-11. The numbers of rural, urban-canyon, indoor-window, valley, tunnel and garage
+// are invented: held against no record, they follow from the fitted ones and from what the words mean.
 ChannelParameters channel_of(Surroundings surroundings) {
     ChannelParameters p;
     switch (surroundings) {
@@ -64,18 +88,21 @@ ChannelParameters channel_of(Surroundings surroundings) {
             p.reach = Angle::degrees(60);
             p.echo_delay = Metres(45);
             break;
-        case Surroundings::indoor_window:
-            p = fitted_channel_of(Surroundings::urban);
-            p.bad_odds = 5;
-            p.distance_scale = 0.5;
-            p.good_loss = Decibels(8);
-            p.bad_loss = Decibels(5);
-            p.diffuse = Decibels(-6);
-            p.reach = Angle::degrees(30);
-            p.echo_delay = Metres(10);
+        case Surroundings::valley:
+            p.environment = P681Environment::village;
+            p.bad_loss = Decibels(25);
+            p.distance_scale = 5;
+            p.wall = Angle::degrees(25);
+            p.wall_spread = Angle::degrees(4);
+            p.diffuse = Decibels(-8);
+            p.echo_delay = Metres(200);
             break;
+        case Surroundings::indoor_window:
+        case Surroundings::tunnel:
+        case Surroundings::garage:
+            return covered_channel_of(surroundings);
     }
     return p;
 }
 
-}  // namespace skyloop::inline run
+}  // namespace skyloop::inline world

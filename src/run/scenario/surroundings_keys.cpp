@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include "detail/scenario_keys.hpp"
+#include "detail/table_reader.hpp"
+
+namespace skyloop::inline run {
+namespace {
+
+constexpr double longest_way_m = 1e9, longest_time_s = 1e10;
+
+void read_channel_numbers(TableReader& table, ChannelParameters& p) {
+    table.number("distance_scale", p.distance_scale, {0.01, 100}, "of the environment's lengths of way");
+    table.number("bad_odds", p.bad_odds, {0, 1000}, "factor on the environment's odds of a bad state");
+    table.quantity("good_loss_db", p.good_loss, {-30, 100}, "more loss of the direct signal in the good state");
+    table.quantity("bad_loss_db", p.bad_loss, {-30, 100}, "more loss of the direct signal in the bad state");
+    table.number("shadowing_scale", p.shadowing_scale, {0, 10}, "of the environment's σ of shadowing within a state");
+    table.quantity("diffuse_db", p.diffuse, {-60, 30}, "more power of the scattered signal than the environment's");
+    table.degrees("reach_deg", p.reach, {1, 180}, "angle in the sky from which obstacles are independent");
+    table.quantity("creep_mps", p.creep, {0, 10}, "speed at which states and shadows pass an antenna at rest");
+    table.quantity("beat_hz", p.beat, {0, 100}, "σ of the echoes' frequencies at rest");
+    table.quantity("averaging_s", p.averaging, {0, 100}, "time over which a receiver averages fading");
+    table.quantity("echo_delay_m", p.echo_delay, {0, 1e4}, "mean excess of the echoes");
+    table.quantity("echo_length_m", p.echo_length, {0.1, 1e4}, "way over which an echo changes");
+    table.degrees("wall_deg", p.wall, {0, 89},
+                  "mean elevation of the tops of a street's walls, in place of the environment's odds; 0: none");
+    table.degrees("wall_spread_deg", p.wall_spread, {0.1, 90}, "its standard deviation along the street");
+    table.degrees("street_deg", p.street, {-360, 360},
+                  {"azimuth of the street between the walls", "that of the motion, by the seed before any"});
+}
+
+template <class Quantity>
+void read_end(TableReader& table, std::string_view key, Quantity from, Quantity& to, double longest) {
+    std::optional<Quantity> given;
+    table.quantity(key, given, {0, longest}, {"where they end", "the end of the run"});
+    if (given && !(from < *given))
+        table.mistake(key,
+                      fmt::format("is {:g}; expected more than {:g}, where they begin", given->value(), from.value()));
+    to = given.value_or(to);
+}
+
+StretchOfWay read_way(TableReader& table) {
+    StretchOfWay way;
+    table.quantity("from_m", way.from, {0, longest_way_m}, "where they begin, metres travelled since the start");
+    read_end(table, "to_m", way.from, way.to, longest_way_m);
+    return way;
+}
+
+StretchOfTime read_time(TableReader& table) {
+    StretchOfTime time;
+    table.quantity("from_s", time.from, {0, longest_time_s}, "when they begin, seconds after the start of the run");
+    read_end(table, "to_s", time.from, time.to, longest_time_s);
+    return time;
+}
+
+StretchOfPlace read_place(TableReader& table) {
+    const auto corners = table.polygon("inside", "they hold inside this polygon, [[latitude, longitude], …]");
+    if (!corners) return {};
+    auto place = stretch_of_place(*corners);
+    if (!place) return table.mistake("inside", place.error()), StretchOfPlace();
+    return std::move(*place);
+}
+
+void read_extent(TableReader& table, SurroundingsStretch& stretch) {
+    const StretchOfWay way = read_way(table);
+    const StretchOfTime time = read_time(table);
+    StretchOfPlace place = read_place(table);
+    for (const std::string_view key : {"from_m", "to_m"})
+        for (const std::string_view other : {"from_s", "to_s", "inside"})
+            table.not_both(key, other);
+    for (const std::string_view key : {"from_s", "to_s"})
+        table.not_both(key, "inside");
+    table.needs_one_of({"from_m", "to_m", "from_s", "to_s", "inside"},
+                       "has neither from_m, to_m, from_s, to_s nor inside; expected where or when they hold");
+    if (table.has("inside"))
+        stretch.extent = std::move(place);
+    else if (table.has("from_s") || table.has("to_s"))
+        stretch.extent = time;
+    else
+        stretch.extent = way;
+}
+
+void read_ramp(TableReader& table, SurroundingsStretch& stretch) {
+    const bool timed = std::holds_alternative<StretchOfTime>(stretch.extent);
+    double metres = 20, seconds = 2;
+    table.where(!timed, "without from_s and to_s", [&] {
+        table.number("ramp_m", metres, {0, longest_way_m}, "way over which they come and go");
+    });
+    table.where(timed, "with from_s or to_s", [&] {
+        table.number("ramp_s", seconds, {0, longest_time_s}, "time over which they come and go");
+    });
+    stretch.ramp = timed ? seconds : metres;
+}
+
+SurroundingsStretch read_stretch(TableReader& table) {
+    SurroundingsStretch stretch;
+    const auto kind = table.choice("kind", surroundings_names, "what is around the antenna");
+    table.needs_one_of({"kind"}, "has no kind; expected what is around the antenna");
+    if (kind) stretch.channel = channel_of(static_cast<Surroundings>(*kind));
+    read_extent(table, stretch);
+    read_ramp(table, stretch);
+    table.table("channel", "numbers of their channel, in place of those of kind",
+                [&](TableReader& t) { read_channel_keys(t, stretch.channel); });
+    return stretch;
+}
+
+}  // namespace
+
+void read_channel_keys(TableReader& table, ChannelParameters& p) {
+    table.word("environment",
+               {{"none", std::nullopt},
+                {"urban", P681Environment::urban},
+                {"suburban", P681Environment::suburban},
+                {"village", P681Environment::village},
+                {"wooded", P681Environment::wooded},
+                {"residential", P681Environment::residential}},
+               p.environment, {"statistics of ITU-R P.681-11; none: no channel", "that of surroundings"});
+    table.where(p.environment.has_value(), "with surroundings that have a channel, or with environment",
+                [&] { read_channel_numbers(table, p); });
+    table.quantity("roof_db", p.roof, {0, 100}, {"loss towards the zenith by the roof of a car", "0; car = true 4"});
+    table.quantity("cover_db", p.cover, {0, 200},
+                   {"loss of what is all around, as a tunnel's rock", "0; tunnel 60, garage 22"});
+    table.where(p.cover > Decibels(0), "with cover_db", [&] {
+        table.quantity("opening_side_m", p.opening_side, {0, 1000},
+                       "of the openings where such surroundings begin and end, to each side of the antenna");
+        table.quantity("opening_height_m", p.opening_height, {0, 1000}, "of the openings, above the antenna");
+    });
+}
+
+void read_surroundings(TableReader& top, Scenario& scenario) {
+    ModernSettings& modern = scenario.model.modern;
+    const std::size_t told = top.idle_keys().size();
+    top.tables("surroundings", "surroundings along the way; of those that overlap, the last",
+               [&](TableReader& t) { modern.propagation.stretches.push_back(read_stretch(t)); });
+    const std::vector<std::string>& idle = top.idle_keys();
+    modern.idle_keys.insert(modern.idle_keys.end(), idle.begin() + static_cast<std::ptrdiff_t>(told), idle.end());
+    if (scenario.model.sensor_model && !modern.propagation.stretches.empty())
+        top.mistake("surroundings", "have no effect on a sensor model; expected model.kind = \"modern\"");
+}
+
+}  // namespace skyloop::inline run
