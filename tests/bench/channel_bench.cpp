@@ -8,8 +8,8 @@ namespace {
 using namespace skyloop;
 
 void channel_of_a_satellite(benchmark::State& state) {
-    ChannelParameters parameters;
-    parameters.environment = P681Environment::urban;
+    SurroundingsParameters parameters;
+    parameters.everywhere.environment = P681Environment::urban;
     SurroundingsEffect effect(parameters, {}, 1);
     SkyView sky;
     for (int number = 1; number <= 32; ++number) {

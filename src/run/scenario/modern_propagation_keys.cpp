@@ -229,8 +229,13 @@ void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings,
                  [&](TableReader& t) { read_troposphere_truth(t, p.troposphere_model); });
     modern.table("losses", "rain, trees and water on the antenna",
                  [&](TableReader& t) { read_losses(t, p.loss_model); });
-    modern.table("channel", "obstacles and echoes where there is no scene",
-                 [&](TableReader& t) { read_channel_keys(t, p.channel_model); });
+    modern.table("channel", "obstacles and echoes where there is no scene", [&](TableReader& t) {
+        read_channel_keys(t, p.channel_model);
+        t.where(p.channel_model.acts(), "with surroundings that have a channel, or with environment", [&] {
+            t.quantity("roof_db", p.channel_model.roof, {0, 100},
+                       {"loss towards the zenith by the roof of a car", "0; car = true 4"});
+        });
+    });
     modern.table("link", "powers, antenna and noise", [&](TableReader& t) { read_link(t, settings, folder); });
     modern.table("interference", "a jammer", [&](TableReader& t) { read_interference(t, p.link); });
     modern.table("scintillation", "a restless ionosphere",

@@ -116,7 +116,6 @@ void read_channel_keys(TableReader& table, ChannelParameters& p) {
                p.environment, {"statistics of ITU-R P.681-11; none: no channel", "that of surroundings"});
     table.where(p.environment.has_value(), "with surroundings that have a channel, or with environment",
                 [&] { read_channel_numbers(table, p); });
-    table.quantity("roof_db", p.roof, {0, 100}, {"loss towards the zenith by the roof of a car", "0; car = true 4"});
     table.quantity("cover_db", p.cover, {0, 200},
                    {"loss of what is all around, as a tunnel's rock", "0; tunnel 60, garage 22"});
     table.where(p.cover > Decibels(0), "with cover_db", [&] {

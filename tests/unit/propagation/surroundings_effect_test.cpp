@@ -5,16 +5,19 @@
 
 #include <cmath>
 
+#include "base/geo/local_frame.hpp"
 #include "modern_sky.hpp"
+#include "world/propagation/surroundings.hpp"
 
 namespace {
 
 using namespace skyloop;
 
-ChannelParameters effect_parameters() {
-    ChannelParameters parameters;
-    parameters.environment = P681Environment::urban;
-    parameters.bad_odds = 4;
+SurroundingsParameters effect_parameters() {
+    SurroundingsParameters parameters;
+    parameters.everywhere.environment = P681Environment::urban;
+    parameters.everywhere.bad_odds = 4;
+    parameters.start = test::april_noon;
     return parameters;
 }
 
@@ -99,10 +102,11 @@ TEST(SurroundingsEffect, SwitchedOffLeavesNothing) {
 
 // A car's roof takes its decibels towards the zenith, and none from low satellites.
 TEST(SurroundingsEffect, ARoofWeakensHighSatellites) {
-    ChannelParameters roofed = effect_parameters(), open = effect_parameters();
-    open.bad_odds = roofed.bad_odds = 0.001;
-    open.diffuse = roofed.diffuse = Decibels(-60);
-    roofed.roof = Decibels(6);
+    SurroundingsParameters roofed = effect_parameters();
+    roofed.everywhere.bad_odds = 0.001;
+    roofed.everywhere.diffuse = Decibels(-60);
+    const SurroundingsParameters open = roofed;
+    roofed.everywhere.roof = Decibels(6);
     SurroundingsEffect with(roofed, {}, 9), without(open, {}, 9);
     const auto extra = [&](double elevation) {
         const SkyView sky = test::gps_ring(1, elevation);
@@ -113,6 +117,79 @@ TEST(SurroundingsEffect, ARoofWeakensHighSatellites) {
     EXPECT_NEAR(extra(89.9), 6, 0.1);
     EXPECT_NEAR(extra(20), 0, 1e-9);
     EXPECT_GT(extra(60), 2);
+}
+
+// An open road of 1 km with surroundings from 200 to 400 m.
+SurroundingsParameters road_with(Surroundings kind, double ramp) {
+    SurroundingsParameters parameters;
+    parameters.start = test::april_noon;
+    parameters.stretches = {{channel_of(kind), StretchOfWay{Metres(200), Metres(400)}, ramp}};
+    return parameters;
+}
+
+// Northwards at 10 m/s, an epoch each metre.
+Arrivals driven(SurroundingsEffect& effect, const SkyView& sky, int metres) {
+    TruthState truth = test::truth_of(place_north(metres), test::april_noon + std::chrono::milliseconds(100 * metres));
+    const LocalFrame frame(truth.geodetic);
+    truth.velocity = frame.to_ecef(Velocity<Enu>(0, 10, 0));
+    return test::after(effect, sky, truth);
+}
+
+TEST(SurroundingsEffect, StretchesActAlongTheirWayAlone) {
+    SurroundingsEffect effect(road_with(Surroundings::urban, 20), {}, 9);
+    const SkyView sky = test::gps_ring(12, 20);
+    double most_before = 0, most_within = 0, largest_step = 0, before = 0;
+    for (int metre = 0; metre <= 500; ++metre) {
+        const Arrival arrival = driven(effect, sky, metre).satellites[3];
+        const double loss = arrival.direct_loss.value();
+        (metre < 200 || metre > 401 ? most_before : most_within) =
+            std::max(std::abs(loss), metre < 200 || metre > 401 ? most_before : most_within);
+        if (metre < 225) largest_step = std::max(largest_step, std::abs(loss - before));
+        before = loss;
+    }
+    EXPECT_EQ(most_before, 0);
+    EXPECT_GT(most_within, 5);
+    EXPECT_LT(largest_step, 6) << "the ramp lets it come gradually";
+}
+
+// Of a tunnel the satellites behind are the last to go, those ahead the first to come back, and the zenith is gone at
+// once.
+TEST(SurroundingsEffect, ATunnelClosesAndOpensByItsEnds) {
+    SurroundingsEffect effect(road_with(Surroundings::tunnel, 0), {}, 9);
+    SkyView sky;
+    sky.satellites = {test::satellite_at({Constellation::gps, 1}, 0, 10),
+                      test::satellite_at({Constellation::gps, 2}, 180, 10),
+                      test::satellite_at({Constellation::gps, 3}, 90, 80)};
+    std::vector<std::vector<bool>> seen;
+    for (int metre = 0; metre <= 500; ++metre) {
+        seen.emplace_back();
+        for (const Arrival& arrival : driven(effect, sky, metre).satellites)
+            seen.back().push_back(arrival.shadowing_loss < Decibels(20));
+    }
+    using Row = std::vector<bool>;
+    EXPECT_EQ(seen[195], (Row{true, true, true}));
+    EXPECT_EQ(seen[210], (Row{false, true, false})) << "ten metres in";
+    EXPECT_EQ(seen[300], (Row{false, false, false}));
+    EXPECT_EQ(seen[390], (Row{true, false, false})) << "ten metres before its end";
+    EXPECT_EQ(seen[405], (Row{true, true, true}));
+}
+
+// Between walls satellites along the street are in the good state, those across it in the bad one.
+TEST(SurroundingsEffect, WallsBlockAcrossTheStreet) {
+    SurroundingsParameters parameters;
+    parameters.everywhere = channel_of(Surroundings::valley);
+    parameters.everywhere.wall = Angle::degrees(60);
+    parameters.start = test::april_noon;
+    SurroundingsEffect effect(parameters, {}, 9);
+    SkyView sky;
+    for (int i = 0; i < 4; ++i)
+        sky.satellites.push_back(test::satellite_at({Constellation::gps, i + 1}, 90.0 * i, 35));
+    std::vector<int> shadowed(4);
+    for (int metre = 0; metre < 400; ++metre)
+        for (std::size_t i = 0; const Arrival& arrival : driven(effect, sky, metre).satellites)
+            shadowed[i++] += arrival.shadowed ? 1 : 0;
+    EXPECT_LT(shadowed[0] + shadowed[2], 40) << "north and south, along the way";
+    EXPECT_GT(shadowed[1] + shadowed[3], 760);
 }
 
 }  // namespace

@@ -274,46 +274,6 @@ TEST(ModernKeys, OfTheSolution) {
     });
 }
 
-// A key of the channel beside an environment, without which none of them acts.
-double channel_number(const std::string& key, const std::string& value, double (*found)(const ChannelParameters&)) {
-    const ModernSettings read = modern_of("[model.modern.channel]\nenvironment = \"urban\"\n" + key + " = " + value);
-    EXPECT_TRUE(read.idle_keys.empty()) << key;
-    EXPECT_EQ(modern_of("[model.modern.channel]\n" + key + " = " + value).idle_keys.size(), 1u) << key;
-    return found(read.propagation.channel_model);
-}
-
-TEST(ModernKeys, OfTheChannel) {
-    using P = const ChannelParameters&;
-    EXPECT_EQ(channel_number("distance_scale", "2.5", [](P p) { return p.distance_scale; }), 2.5);
-    EXPECT_EQ(channel_number("bad_odds", "2.5", [](P p) { return p.bad_odds; }), 2.5);
-    EXPECT_EQ(channel_number("good_loss_db", "2.5", [](P p) { return p.good_loss.value(); }), 2.5);
-    EXPECT_EQ(channel_number("bad_loss_db", "2.5", [](P p) { return p.bad_loss.value(); }), 2.5);
-    EXPECT_EQ(channel_number("shadowing_scale", "2.5", [](P p) { return p.shadowing_scale; }), 2.5);
-    EXPECT_EQ(channel_number("diffuse_db", "2.5", [](P p) { return p.diffuse.value(); }), 2.5);
-    EXPECT_NEAR(channel_number("reach_deg", "25", [](P p) { return p.reach.deg(); }), 25, 1e-12);
-    EXPECT_EQ(channel_number("creep_mps", "0.25", [](P p) { return p.creep.value(); }), 0.25);
-    EXPECT_EQ(channel_number("beat_hz", "2.5", [](P p) { return p.beat.value(); }), 2.5);
-    EXPECT_EQ(channel_number("averaging_s", "2.5", [](P p) { return p.averaging.value(); }), 2.5);
-    EXPECT_EQ(channel_number("echo_delay_m", "2.5", [](P p) { return p.echo_delay.value(); }), 2.5);
-    EXPECT_EQ(channel_number("echo_length_m", "2.5", [](P p) { return p.echo_length.value(); }), 2.5);
-    EXPECT_EQ(channel_number("roof_db", "2.5", [](P p) { return p.roof.value(); }), 2.5);
-}
-
-TEST(ModernKeys, ACarHasARoofWhereThereIsAChannel) {
-    const ModernSettings car = modern_of("[model.modern]\nsurroundings = \"urban\"\ncar = true");
-    EXPECT_GT(car.propagation.channel_model.roof, Decibels(0));
-    EXPECT_TRUE(car.idle_keys.empty());
-    EXPECT_EQ(modern_of("[model.modern]\nsurroundings = \"urban\"").propagation.channel_model.roof, Decibels(0));
-    EXPECT_EQ(modern_of("[model.modern]\ncar = true").idle_keys.size(), 1u);
-}
-
-TEST(ModernKeys, AnOpenSkyHasNoChannel) {
-    EXPECT_FALSE(modern_of("").propagation.channel_model.environment);
-    EXPECT_TRUE(modern_of("[model.modern]\nsurroundings = \"forest\"").propagation.channel_model.environment);
-    EXPECT_FALSE(modern_of("[model.modern]\nsurroundings = \"forest\"\nchannel = { environment = \"none\" }")
-                     .propagation.channel_model.environment);
-}
-
 #undef SKYLOOP_FIELD
 #undef SKYLOOP_PLAIN
 #undef SKYLOOP_WORD
