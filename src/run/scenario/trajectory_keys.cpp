@@ -198,7 +198,10 @@ std::optional<TrajectorySettings> read_trajectory_keys(TableReader& parent, KeyT
     PlaceReader places(context.level, warnings);
     parent.table("trajectory", text, [&](TableReader& table) {
         trajectory.emplace();
+        const std::size_t before = table.mistake_count();
         read_kind({table, places, context.folder, *trajectory});
+        // What is left of a way with mistakes may be none: other mistakes are looked for at a place.
+        if (table.mistake_count() > before) trajectory.reset();
     });
     return trajectory;
 }

@@ -27,6 +27,9 @@ enum class ExpectedSubject {
     speed_error,          ///< … velocity over ground and up, length of the difference, m/s
     horizontal_accuracy,  ///< as reported, 1 σ, m
     vertical_accuracy,    ///< as reported, 1 σ, m
+    pdop,                 ///< as reported
+    hdop,
+    vdop,
     satellites,           ///< used in the reported fix
     cn0,                  ///< mean of the tracked satellites, or of one, dB-Hz
     jamming_flagged,      ///< the jamming state is warning or critical
@@ -48,7 +51,7 @@ struct SubjectClause {
     ExpectedSubject subject = ExpectedSubject::fix;
     FixType fix_type = FixType::fix_3d;  ///< of fix_type
     Relation comparison = Relation::below;
-    double limit = 0;                        ///< m, m/s, dB-Hz or satellites
+    double limit = 0;                        ///< m, m/s, dB-Hz, satellites or DOP
     std::optional<SatelliteId> satellite{};  ///< of cn0; nothing: the mean of all tracked
     std::string message{};                   ///< of …_sends; "CFG-*" for all that begin so, "anything"
     std::optional<Seconds> every{};          ///< of …_sends: no gap is longer
@@ -134,7 +137,7 @@ struct SentenceMistake {
 ///     subject    = "no" "fix" | "fix" | ("2d" | "3d" | "dgnss") "fix" | "rtk" ("fixed" | "float")
 ///                | "dead" "reckoning" | "time" "only"
 ///                | ("horizontal" | "vertical") "error" compare NUMBER "m" | "speed" "error" compare NUMBER "m/s"
-///                | ("h_acc" | "v_acc") compare NUMBER "m" | "satellites" compare NUMBER
+///                | ("h_acc" | "v_acc") compare NUMBER "m" | ("PDOP" | "HDOP" | "VDOP" | "satellites") compare NUMBER
 ///                | "C/N0" ["of" SATELLITE] compare NUMBER "dBHz" | ("jamming" | "spoofing") "flagged"
 ///                | "client" ("sends" message | "reconfigures" | "silent" ["for" span] | "trusts" | "distrusts")
 ///                | "receiver" ("sends" message | "silent" ["for" span])

@@ -116,6 +116,8 @@ bool SentenceParser::read_quantity() {
     if (words_.accept("speed")) return error_of(ExpectedSubject::speed_error, {"m/s"});
     return read_number_of("h_acc", ExpectedSubject::horizontal_accuracy, {"m"}) ||
            read_number_of("v_acc", ExpectedSubject::vertical_accuracy, {"m"}) ||
+           read_number_of("pdop", ExpectedSubject::pdop, {}) || read_number_of("hdop", ExpectedSubject::hdop, {}) ||
+           read_number_of("vdop", ExpectedSubject::vdop, {}) ||
            read_number_of("satellites", ExpectedSubject::satellites, {}) || read_cn0();
 }
 

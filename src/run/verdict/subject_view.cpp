@@ -67,6 +67,12 @@ std::optional<double> quantity_of(const SubjectClause& subject, const EpochSeen&
             return fix.horizontal_accuracy.value();
         case ExpectedSubject::vertical_accuracy:
             return fix.vertical_accuracy.value();
+        case ExpectedSubject::pdop:
+            return fix.dop.pdop;
+        case ExpectedSubject::hdop:
+            return fix.dop.hdop;
+        case ExpectedSubject::vdop:
+            return fix.dop.vdop;
         default:
             return std::nullopt;
     }

@@ -38,23 +38,26 @@ TEST_P(ExpectationForms, AreUnderstoodAndReadBackAsTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(
     Subjects, ExpectationForms,
-    testing::Values(
-        Form{"no fix", "no fix"}, Form{"FIX", "fix"}, Form{"2d fix", "2d fix"}, Form{"3D fix", "3d fix"},
-        Form{"dgnss fix", "dgnss fix"}, Form{"rtk fixed", "rtk fixed"}, Form{"rtk float", "rtk float"},
-        Form{"dead reckoning", "dead reckoning"}, Form{"time only", "time only"},
-        Form{"horizontal error below 5 m", "horizontal error below 5 m"},
-        Form{"vertical error above 2.5m", "vertical error above 2.5 m"},
-        Form{"speed error at most 0.1 m/s", "speed error at most 0.1 m/s"},
-        Form{"h_acc below 10 m", "h_acc below 10 m"}, Form{"v_acc above 10 m", "v_acc above 10 m"},
-        Form{"satellites at least 4", "satellites at least 4"}, Form{"c/n0 below 30 dB-Hz", "C/N0 below 30 dBHz"},
-        Form{"C/N0 of G07 above 40 dBHz", "C/N0 of G07 above 40 dBHz"}, Form{"jamming flagged", "jamming flagged"},
-        Form{"spoofing flagged", "spoofing flagged"}, Form{"client sends CFG-VALSET", "client sends CFG-VALSET"},
-        Form{"client sends \"PUBX,41\"", "client sends PUBX,41"},
-        Form{"client sends 'always'", "client sends 'always'"}, Form{"client reconfigures", "client reconfigures"},
-        Form{"client silent", "client silent for 2 s"}, Form{"client silent for 3 s", "client silent for 3 s"},
-        Form{"client trusts", "client trusts"}, Form{"client distrusts", "client distrusts"},
-        Form{"receiver sends NAV-PVT", "receiver sends NAV-PVT"},
-        Form{"receiver silent for 0.5 s", "receiver silent for 0.5 s"}));
+    testing::Values(Form{"no fix", "no fix"}, Form{"FIX", "fix"}, Form{"2d fix", "2d fix"}, Form{"3D fix", "3d fix"},
+                    Form{"dgnss fix", "dgnss fix"}, Form{"rtk fixed", "rtk fixed"}, Form{"rtk float", "rtk float"},
+                    Form{"dead reckoning", "dead reckoning"}, Form{"time only", "time only"},
+                    Form{"horizontal error below 5 m", "horizontal error below 5 m"},
+                    Form{"vertical error above 2.5m", "vertical error above 2.5 m"},
+                    Form{"speed error at most 0.1 m/s", "speed error at most 0.1 m/s"},
+                    Form{"h_acc below 10 m", "h_acc below 10 m"}, Form{"v_acc above 10 m", "v_acc above 10 m"},
+                    Form{"HDOP above 2.5", "HDOP above 2.5"}, Form{"pdop at most 3", "PDOP at most 3"},
+                    Form{"VDOP below 4", "VDOP below 4"}, Form{"satellites at least 4", "satellites at least 4"},
+                    Form{"c/n0 below 30 dB-Hz", "C/N0 below 30 dBHz"},
+                    Form{"C/N0 of G07 above 40 dBHz", "C/N0 of G07 above 40 dBHz"},
+                    Form{"jamming flagged", "jamming flagged"}, Form{"spoofing flagged", "spoofing flagged"},
+                    Form{"client sends CFG-VALSET", "client sends CFG-VALSET"},
+                    Form{"client sends \"PUBX,41\"", "client sends PUBX,41"},
+                    Form{"client sends 'always'", "client sends 'always'"},
+                    Form{"client reconfigures", "client reconfigures"}, Form{"client silent", "client silent for 2 s"},
+                    Form{"client silent for 3 s", "client silent for 3 s"}, Form{"client trusts", "client trusts"},
+                    Form{"client distrusts", "client distrusts"},
+                    Form{"receiver sends NAV-PVT", "receiver sends NAV-PVT"},
+                    Form{"receiver silent for 0.5 s", "receiver silent for 0.5 s"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Times, ExpectationForms,

@@ -69,6 +69,11 @@ TEST(JudgeSubjects, NumbersAreComparedInTheirUnits) {
     EXPECT_EQ(after_one_epoch("h_acc at least 3 m", fix), passed);
     EXPECT_EQ(after_one_epoch("h_acc above 3 m", fix), failed);
     EXPECT_EQ(after_one_epoch("v_acc above 5 m", fix), passed);
+    EXPECT_EQ(after_one_epoch("HDOP above 1.1", fix), passed);
+    EXPECT_EQ(after_one_epoch("HDOP above 1.3", fix), failed);
+    EXPECT_EQ(after_one_epoch("VDOP above 1.5", fix), passed);
+    EXPECT_EQ(after_one_epoch("PDOP at most 1.9", fix), failed);
+    EXPECT_EQ(after_one_epoch("HDOP below 1.3", no_fix), failed);
     EXPECT_EQ(after_one_epoch("satellites at least 8", fix), passed);
     EXPECT_EQ(after_one_epoch("satellites at least 9", fix), failed);
     EXPECT_EQ(after_one_epoch("satellites at most 0", no_fix), passed);

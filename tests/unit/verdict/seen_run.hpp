@@ -66,6 +66,7 @@ public:
         reported.velocity.north = fix.speed_error_mps;
         reported.horizontal_accuracy = Metres(fix.h_acc_m);
         reported.vertical_accuracy = Metres(2 * fix.h_acc_m);
+        reported.dop = {.pdop = 2, .hdop = 1.2, .vdop = 1.6};
         for (int i = 1; i <= fix.satellites; ++i) {
             SatelliteStatus status{{Constellation::gps, i}, {}, {}, DbHz(fix.cn0 + i)};
             status.used = true;

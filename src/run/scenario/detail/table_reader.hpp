@@ -79,6 +79,7 @@ public:
     /// @param code `outside` for what the outside world refused, as a file that cannot be read
     void add(const toml::source_region& where, const std::string& sentence, ErrorCode code = ErrorCode::input);
     [[nodiscard]] bool empty() const { return mistakes_.empty(); }
+    [[nodiscard]] std::size_t count() const { return mistakes_.size(); }
     /// A part of the file that has been changed since it was parsed.
     struct Change {
         std::string path;             ///< that mistakes there begin with: "fault.at_s"
@@ -280,6 +281,8 @@ public:
     const toml::node* node(std::string_view key, KeyType type, KeyText text = {});
     void mistake_here(const std::string& sentence) { mistakes_.add(table_.source(), where() + sentence); }
     void finish();
+    /// In the file so far.
+    [[nodiscard]] std::size_t mistake_count() const { return mistakes_.count(); }
 
     /// Whether nothing is read, and the keys that are asked for are noted.
     [[nodiscard]] bool recording() const { return recorder_ != nullptr; }

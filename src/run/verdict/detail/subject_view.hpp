@@ -46,7 +46,7 @@ struct SubjectWords {
     std::string_view unit{};  ///< " m", " dBHz" … behind its number
 };
 /// In the order of ExpectedSubject.
-inline constexpr std::array<SubjectWords, 19> subject_words{{{"fix"},
+inline constexpr std::array<SubjectWords, 22> subject_words{{{"fix"},
                                                              {"no fix"},
                                                              {"fix"},
                                                              {"horizontal error", " m"},
@@ -54,6 +54,9 @@ inline constexpr std::array<SubjectWords, 19> subject_words{{{"fix"},
                                                              {"speed error", " m/s"},
                                                              {"h_acc", " m"},
                                                              {"v_acc", " m"},
+                                                             {"PDOP"},
+                                                             {"HDOP"},
+                                                             {"VDOP"},
                                                              {"satellites", " satellites"},
                                                              {"C/N0", " dBHz"},
                                                              {"jamming flagged"},
