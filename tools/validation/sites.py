@@ -96,7 +96,8 @@ def phone(evidence):
     else:
         accuracies, speeds = evidence.fixes.values("h_acc"), evidence.fixes.speed.values()
     result |= figures.of_speed(speeds) | {"hAcc": statistics.median(accuracies)}
-    result["C/N0 mean"] = statistics.fmean(evidence.rinex.strengths)
+    result["C/N0 mean"] = statistics.fmean(strength for epoch in evidence.rinex.strengths.values()
+                                           for strength in epoch.values())
     return result
 
 
