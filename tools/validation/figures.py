@@ -91,7 +91,7 @@ def of_counts(counts, kind="sats"):
     """Mean of the satellites used (or of another kind), and how often their number differs from the epoch before."""
     pairs = [(a, b) for a, b in zip(counts, counts[1:]) if a is not None and b is not None]
     return {kind: statistics.fmean(known(counts)),
-            f"{kind.removesuffix('s')} changes": sum(a != b for a, b in pairs) / len(pairs)}
+            f"{kind.removesuffix('s')} changes": sum(a != b for a, b in pairs) / len(pairs) if pairs else math.nan}
 
 
 def of_strength(epochs):

@@ -187,15 +187,16 @@ class Rinex:
                 cell = line[3 + 16 * index:19 + 16 * index]
                 cells[name[0]] = (float(cell[:14]) if cell[:14].strip() else None, cell[14:15])
         satellite, code, (carrier, slip) = line[:3].replace(" ", "0"), cells["C"][0], cells["L"]
-        if code is not None and cells.get("S"):
-            self.strengths.setdefault(second, {})[satellite] = cells["S"][0]
+        strength = cells.get("S", (None, ""))[0]
+        if code is not None and strength is not None:
+            self.strengths.setdefault(second, {})[satellite] = strength
         if code is None or carrier is None or satellite not in self.channels and line[0] == "R":
             return
         frequency = 1602e6 + 562500 * self.channels[satellite] if line[0] == "R" else FREQUENCIES.get(line[0], L1)
         wavelength = 299792458.0 / frequency
         self.satellites.setdefault(satellite, {})[second] = (
             code, carrier * wavelength, slip.strip() not in ("", "0") and int(slip) & 1 == 1,
-            cells.get("D", (None, ""))[0], cells.get("S", (None, ""))[0], wavelength)
+            cells.get("D", (None, ""))[0], strength, wavelength)
 
     def code_rows(self, elevations):
         """For figures.of_code; a satellite without an elevation is left out."""

@@ -25,11 +25,12 @@ def write_track(data, path):
 def of_single(solved, truth):
     """Of ({second: place}, {second: satellites}) where the place of every second is known."""
     places, counts = solved
-    errors = [geodesy.offset(places[second], place) if second in places else None
-              for second, place in sorted(truth.items())]
+    result = figures.of_errors([geodesy.offset(places[second], place) if second in places else None
+                                for second, place in sorted(truth.items())])
+    if len(counts) < 2:
+        return result
     used = records.by_second(counts)
-    result = figures.of_errors(errors) | figures.of_counts(used)
-    return result | {"spread of sats": statistics.pstdev(figures.known(used))}
+    return result | figures.of_counts(used) | {"spread of sats": statistics.pstdev(figures.known(used))}
 
 
 def nagoya(evidence):
