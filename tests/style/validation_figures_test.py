@@ -42,6 +42,19 @@ class Series(unittest.TestCase):
                 self.assertAlmostEqual(value, again, places=6)
 
 
+    def test_errors_of_fixes_that_come_and_go(self):
+        result = figures.of_errors([(3, 4, 9), None, (0, 1, 0), (0, 3, 5)])
+        self.assertEqual((result["fixes"], result["error p50"], result["d1 error p50"]), (0.75, 3, 2))
+        self.assertEqual(figures.of_errors([None, None]), {"fixes": 0})
+        self.assertAlmostEqual(geodesy.offset([53.2801, -9, 30], [53.28, -9, 20])[1], 11.1, delta=0.1)
+
+    def test_satellites_together_and_one_by_one(self):
+        epochs = [{"G01": (50, 45 + second % 2), "G02": (20, 30)} for second in range(100)]
+        result = figures.of_satellites([*epochs, {"G03": (5, 20)}])
+        self.assertEqual((result["C/N0 p5"], result["C/N0 p95"], result["C/N0 sd of a satellite"]), (30, 46, 0.25))
+        self.assertEqual(figures.of_counts([4, 5, 5], "tracked")["tracked changes"], 0.5)
+
+
 class Raw(unittest.TestCase):
     def test_white_code_without_its_quadratic(self):
         rows = [(t, 2e7 + 0.01 * t * t + value, 2e7 + 0.01 * t * t - 3e-5 * t * t, False, 45, 33)
@@ -76,6 +89,10 @@ class Bands(unittest.TestCase):
         self.expect("C/N0 sd el 30", [3], 2, 4.5)
         self.expect("sats", [14], 13, 15)
         self.expect("sat changes", [0.1], 0.05, 0.2)
+        self.expect("tracked", [14], 13, 15)
+        self.expect("tracked changes", [0.1], 0.05, 0.2)
+        self.expect("fixes", [0.6], 0.4, 0.9)
+        self.expect("C/N0 p50", [40], 38, 42)
         self.expect("hdop p95", [1], 0.8, 1.2)
         self.expect("speed at rest p50", [0.004], 0.002, 0.008)
         self.expect("hAcc", [1.5], 1, 2.25)

@@ -18,10 +18,10 @@ SINGLE = (
     (r"(^| )r1( |$)", "add", 0.15),
     (r"^r\d+ ", "add", 0.3),
     (r"^(d1 )?std ", "share", 0.3),
-    (r"^C/N0 (el |mean)", "add", 2),
-    (r"^sats", "add", 1),
+    (r"^C/N0 (el |mean|p\d)", "add", 2),
+    (r"^sats|^tracked$", "add", 1),
     (r"^[hp]dop", "share", 0.2),
-    (r"^speed|^vel up|^share|^sat changes|^sAcc", "factor", 2),
+    (r"^speed|^vel up|^share| changes$|^sAcc", "factor", 2),
     (r"", "factor", 1.5),
 )
 

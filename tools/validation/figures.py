@@ -71,15 +71,27 @@ def of_position(rows, lags):
     return figures
 
 
+def of_errors(errors, shares=(50, 95, 99)):
+    """Of rows of east, north, up against the truth (None: no fix): the share of fixes, and percentiles of the horizontal
+    error and of its change from one epoch to the next."""
+    steps = [[b - a for a, b in zip(before, after)] for before, after in zip(errors, errors[1:]) if before and after]
+    figures = {"fixes": len(known(errors)) / len(errors)}
+    for name, rows in (("error", known(errors)), ("d1 error", steps)):
+        for share in shares if rows else ():
+            figures[f"{name} p{share}"] = percentile([math.hypot(*row[:2]) for row in rows], share / 100)
+    return figures
+
+
 def of_speed(speeds):
     """Of a receiver that stands; m/s."""
     return {"speed at rest p50": percentile(speeds, 0.5), "speed at rest p95": percentile(speeds, 0.95)}
 
 
-def of_counts(counts):
-    """Mean of the satellites used, and how often their number differs from the epoch before."""
+def of_counts(counts, kind="sats"):
+    """Mean of the satellites used (or of another kind), and how often their number differs from the epoch before."""
     pairs = [(a, b) for a, b in zip(counts, counts[1:]) if a is not None and b is not None]
-    return {"sats": statistics.fmean(known(counts)), "sat changes": sum(a != b for a, b in pairs) / len(pairs)}
+    return {kind: statistics.fmean(known(counts)),
+            f"{kind.removesuffix('s')} changes": sum(a != b for a, b in pairs) / len(pairs) if pairs else math.nan}
 
 
 def of_strength(epochs):
@@ -93,6 +105,19 @@ def of_strength(epochs):
         if len(values) >= LEAST_OF_BIN:
             figures[f"C/N0 el {low}"] = statistics.fmean(values)
             figures[f"C/N0 sd el {low}"] = statistics.pstdev(values)
+    return figures
+
+
+def of_satellites(epochs):
+    """C/N0 of all satellites together, and its standard deviation for one of them (the median)."""
+    series = {}
+    for epoch in epochs:
+        for satellite, (_, strength) in epoch.items():
+            series.setdefault(satellite, []).append(strength)
+    every = [strength for values in series.values() for strength in values]
+    figures = {f"C/N0 p{share}": percentile(every, share / 100) for share in (5, 50, 95)}
+    figures["C/N0 sd of a satellite"] = statistics.median(
+        statistics.pstdev(values) for values in series.values() if len(values) >= LEAST_OF_BIN)
     return figures
 
 

@@ -38,9 +38,13 @@ def local(vector, latitude, longitude):
 
 def elevation(satellite, place):
     """Degrees, of an ECEF position above the horizon of a geodetic place."""
-    site = to_ecef(*place)
-    east, north, up = local([a - b for a, b in zip(satellite, site)], place[0], place[1])
+    east, north, up = local([a - b for a, b in zip(satellite, to_ecef(*place))], *place[:2])
     return math.degrees(math.atan2(up, math.hypot(east, north)))
+
+
+def offset(place, origin):
+    """Metres east, north, up of a geodetic place from another."""
+    return local([a - b for a, b in zip(to_ecef(*place), to_ecef(*origin))], *origin[:2])
 
 
 def east_north_up(rows):

@@ -13,6 +13,7 @@ import tempfile
 from . import geodesy
 
 GLITCH_M = 1000  # a height that far off is the logger's
+L1, FREQUENCIES = 1575.42e6, {"C": 1561.098e6}  # Hz
 GPS_EPOCH = datetime.datetime(1980, 1, 6)
 
 
@@ -151,7 +152,7 @@ class Rinex:
 
     def __init__(self, path, systems):
         self.satellites, self.columns, self.channels = {}, {}, {}
-        self.strengths = []  # dB-Hz, of all that has a code
+        self.strengths = {}  # {second: {satellite: dB-Hz}}, of all that has a code
         lines = iter(text(path).splitlines())
         self._header(lines)
         second = None
@@ -178,22 +179,24 @@ class Rinex:
 
     def _satellite(self, line, second):
         names = self.columns[line[0]]
-        band = next((name[1:] for name in names if name[0] == "C" and name[1] == "1"), None)
+        bands = ("C1", "C2") if line[0] == "C" else ("C1",)  # B1I is C1I or C2I
+        band = next((name[1:] for name in names if name[:2] in bands), None)
         cells = {}
         for index, name in enumerate(names):
             if name[1:] == band:
                 cell = line[3 + 16 * index:19 + 16 * index]
                 cells[name[0]] = (float(cell[:14]) if cell[:14].strip() else None, cell[14:15])
-        code, (carrier, slip) = cells["C"][0], cells["L"]
-        if code is not None and cells.get("S"):
-            self.strengths.append(cells["S"][0])
-        if code is None or carrier is None or line[:3] not in self.channels and line[0] == "R":
+        satellite, code, (carrier, slip) = line[:3].replace(" ", "0"), cells["C"][0], cells["L"]
+        strength = cells.get("S", (None, ""))[0]
+        if code is not None and strength is not None:
+            self.strengths.setdefault(second, {})[satellite] = strength
+        if code is None or carrier is None or satellite not in self.channels and line[0] == "R":
             return
-        frequency = 1602e6 + 562500 * self.channels[line[:3]] if line[0] == "R" else 1575.42e6
+        frequency = 1602e6 + 562500 * self.channels[satellite] if line[0] == "R" else FREQUENCIES.get(line[0], L1)
         wavelength = 299792458.0 / frequency
-        self.satellites.setdefault(line[:3], {})[second] = (
+        self.satellites.setdefault(satellite, {})[second] = (
             code, carrier * wavelength, slip.strip() not in ("", "0") and int(slip) & 1 == 1,
-            cells.get("D", (None, ""))[0], cells.get("S", (None, ""))[0], wavelength)
+            cells.get("D", (None, ""))[0], strength, wavelength)
 
     def code_rows(self, elevations):
         """For figures.of_code; a satellite without an elevation is left out."""
@@ -257,6 +260,13 @@ def solved(path):
         second = round(gps_seconds(*numbers, float(words[1].split(":")[2])))
         places[second], counts[second] = [float(word) for word in words[2:5]], int(words[6])
     return places, counts
+
+
+def write_track(path, places):
+    """A trajectory of {second: latitude, longitude, height} from its first second on."""
+    first = min(places)
+    rows = [f"{second - first},{place[0]:.9f},{place[1]:.9f},{place[2]:.3f}" for second, place in sorted(places.items())]
+    path.write_text("\n".join(["t_s,lat_deg,lon_deg,h_ell_m", *rows]) + "\n", encoding="ascii")
 
 
 def solved_by(program, observations, orbits):

@@ -67,9 +67,16 @@ class Evidence:
     def rinex(self):
         return records.Rinex(self.observations, "G")
 
-    def single_from(self, mask):
-        """Single points above an elevation in degrees: ({second: place}, {second: satellites})."""
-        settings = single_point.settings(self.setup.systems, mask)
+    @functools.cached_property
+    def strengths(self):
+        """{second: {satellite: (elevation, C/N0)}} of the first band of all systems."""
+        return {second: {name: (self.elevations(name, second), strength) for name, strength in epoch.items()
+                         if self.elevations(name, second) is not None}
+                for second, epoch in records.Rinex(self.observations, self.setup.systems).strengths.items()}
+
+    def single_from(self, mask, *more):
+        """Single points above an elevation in degrees, by more settings: ({second: place}, {second: satellites})."""
+        settings = single_point.settings(self.setup.systems, mask) + list(more)
         return single_point.solve(self.observations, self.navigation, settings, self.scratch)
 
     @functools.cached_property

@@ -6,7 +6,7 @@ import subprocess
 
 from . import records
 
-SYSTEMS = {"G": 1, "R": 4, "E": 8, "J": 16}
+SYSTEMS = {"G": 1, "R": 4, "E": 8, "J": 16, "C": 32}
 SETTINGS = ["pos1-posmode=single", "pos1-frequency=l1", "pos1-ionoopt=brdc", "pos1-tropopt=saas",
             "out-solformat=llh", "out-timesys=gpst", "out-timeform=hms"]
 

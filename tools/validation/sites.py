@@ -4,7 +4,7 @@ import dataclasses
 import functools
 import statistics
 
-from . import figures, gnss_logger, records, single_point, span
+from . import figures, gnss_logger, records, single_point, span, streets
 from .simulation import Evidence, Setup
 
 RIVER = "receivers/galway_20181004_m8p_riverside"
@@ -25,6 +25,10 @@ SETUPS = {
                                                      f"{RIVER}/glw1277m.18g.gz"), systems="GR"),
     "car": Setup("validation/car.toml", (LATER_ORBITS,), rebase=True, way=span.write_track),
     "phone": Setup("validation/phone.toml", (f"{PHONE}/hour2350.16n.gz",)),
+    "nagoya": Setup("validation/nagoya.toml", (f"{streets.NAGOYA}/base.nav.gz",), systems="GRECJ",
+                    way=streets.write_track),
+    "canyon": Setup("validation/canyon.toml", tuple(f"{streets.CANYON}/hksc155{name}" for name in (
+        "c.20n", "d.20n", "c.20g", "c.20b")), systems="GRC"),
     "aptos": Setup("aptos.toml"),
     "arequipa": Setup("arequipa.toml"),
 }
@@ -96,7 +100,8 @@ def phone(evidence):
     else:
         accuracies, speeds = evidence.fixes.values("h_acc"), evidence.fixes.speed.values()
     result |= figures.of_speed(speeds) | {"hAcc": statistics.median(accuracies)}
-    result["C/N0 mean"] = statistics.fmean(evidence.rinex.strengths)
+    result["C/N0 mean"] = statistics.fmean(strength for epoch in evidence.rinex.strengths.values()
+                                           for strength in epoch.values())
     return result
 
 
@@ -146,9 +151,12 @@ def stream_record(path):
     return lambda program, data, setup: [Evidence(program, data / path, None, (), setup, data)]
 
 
-@functools.lru_cache
-def tsukuba_record(program, data, setup):
-    return [Evidence(program, None, data / TSUKUBA / "SEPT078M.21O.gz", setup.files(data), setup, data)]
+def rinex_record(path=None):
+    return functools.lru_cache(lambda program, data, setup: [
+        Evidence(program, None, path and data / path, setup.files(data), setup, data)])
+
+
+tsukuba_record = rinex_record(f"{TSUKUBA}/SEPT078M.21O.gz")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -161,6 +169,7 @@ class Site:
     real: object = None         # the same of the record, where it differs
     of_table: tuple = ()        # figures whose band is that of bands.csv: they hang on how a few arcs are cut
     short: bool = True          # it is part of a short validation
+    group: str = "suburbs and open sky"  # of sites whose figures have a total of their own
 
     def real_figures(self, program, data):
         measure = self.real or self.measure
@@ -190,7 +199,13 @@ SITES = (
          stream_record(f"{span.FOLDER}/ublox-F9K.nmea.gz"), car),
     Site("phone", "Phone 2016-08-22 Charleston Park, GPS / phone", "phone", phone_record, phone),
     Site("aptos", "Aptos A, LEA-6 (10 h) / consumer residential", "aptos",
-         lambda program, data, setup: position_hours(data, APTOS, "*.dlm"), fixes_hour, of_hours(not_steps), short=False),
+         lambda program, data, setup: position_hours(data, APTOS, "*.dlm"), fixes_hour, of_hours(not_steps), short=False,
+         group="hours"),
     Site("arequipa", "Arequipa, UZ-12, one hour with precise orbits / survey", "arequipa",
-         lambda program, data, setup: arequipa_hour(program, data), fixes_hour, of_hours(not_steps), short=False),
+         lambda program, data, setup: arequipa_hour(program, data), fixes_hour, of_hours(not_steps), short=False,
+         group="hours"),
+    Site("nagoya", "Drive through Nagoya, same SPP above 30° / survey urban", "nagoya", rinex_record(), streets.nagoya,
+         streets.nagoya_record, group="streets"),
+    Site("canyon", "F9P in a street canyon of Hong Kong, raw and same SPP / f9p urban-canyon", "canyon",
+         rinex_record(f"{streets.CANYON}/2020_06_03_TST_03.obs.gz"), streets.canyon, group="streets"),
 )

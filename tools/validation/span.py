@@ -31,6 +31,4 @@ def read(data):
 
 def write_track(data, path):
     """From the first second of the record; a place that is missing is left to the interpolation."""
-    rows = [f"{second - START_S},{place[0]:.9f},{place[1]:.9f},{place[2]:.3f}"
-            for second, place in sorted(read(data)[0].items()) if second >= START_S]
-    path.write_text("\n".join(["t_s,lat_deg,lon_deg,h_ell_m", *rows]) + "\n", encoding="ascii")
+    records.write_track(path, {second: place for second, place in read(data)[0].items() if second >= START_S})
