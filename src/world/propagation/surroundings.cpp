@@ -3,8 +3,7 @@
 namespace skyloop::inline world {
 namespace {
 
-// Of forest, suburban-drive, residential and urban: fitted to one record each, by tools/validate (trees, car, garden)
-// and to single points of a drive through Nagoya.
+// Fitted to one record each by tools/validate: garden, trees, car, nagoya, canyon.
 ChannelParameters fitted_channel_of(Surroundings surroundings) {
     ChannelParameters p;
     if (surroundings == Surroundings::residential) {
@@ -15,7 +14,8 @@ ChannelParameters fitted_channel_of(Surroundings surroundings) {
         p.echo_delay = Metres(5);
     } else if (surroundings == Surroundings::forest) {
         p.environment = P681Environment::wooded;
-        p.bad_odds = 3;
+        p.bad_odds = 4;
+        p.bad_loss = Decibels(2);
         p.diffuse = Decibels(-2.5);
         p.creep = MetresPerSecond(0.02);
         p.beat = Hertz(0.002);
@@ -26,14 +26,24 @@ ChannelParameters fitted_channel_of(Surroundings surroundings) {
         p.bad_loss = Decibels(3);
         p.shadowing_scale = 1.5;
         p.echo_length = Metres(30);
+    } else if (surroundings == Surroundings::urban_canyon) {
+        p.environment = P681Environment::urban;
+        p.bad_odds = 0.7;
+        p.bad_loss = Decibels(10);
+        p.diffuse = Decibels(1);
+        p.reach = Angle::degrees(40);
+        p.beat = Hertz(0.006);
+        p.echo_delay = Metres(40);
+        p.echo_length = Metres(10);
     } else {
         p.environment = P681Environment::urban;
         p.distance_scale = 4;
-        p.bad_odds = 2.5;
-        p.bad_loss = Decibels(10);
-        p.diffuse = Decibels(-4);
+        p.bad_odds = 2;
+        p.bad_loss = Decibels(12);
+        p.diffuse = Decibels(5);
         p.reach = Angle::degrees(90);  // the houses of one side of a street
-        p.echo_delay = Metres(60);
+        p.echo_delay = Metres(150);
+        p.echo_length = Metres(7);
     }
     return p;
 }
@@ -64,8 +74,8 @@ ChannelParameters covered_channel_of(Surroundings surroundings) {
 
 }  // namespace
 
-// The environments are those of P.681-11. The numbers of rural, urban-canyon, indoor-window, valley, tunnel and garage
-// are invented: held against no record, they follow from the fitted ones and from what the words mean.
+// The environments are those of P.681-11. The numbers of rural, indoor-window, valley, tunnel and garage are invented:
+// held against no record, they follow from the fitted ones and from what the words mean.
 ChannelParameters channel_of(Surroundings surroundings) {
     ChannelParameters p;
     switch (surroundings) {
@@ -80,14 +90,8 @@ ChannelParameters channel_of(Surroundings surroundings) {
         case Surroundings::forest:
         case Surroundings::suburban_drive:
         case Surroundings::urban:
-            return fitted_channel_of(surroundings);
         case Surroundings::urban_canyon:
-            p = fitted_channel_of(Surroundings::urban);
-            p.bad_odds = 4;
-            p.bad_loss = Decibels(8);
-            p.reach = Angle::degrees(60);
-            p.echo_delay = Metres(45);
-            break;
+            return fitted_channel_of(surroundings);
         case Surroundings::valley:
             p.environment = P681Environment::village;
             p.bad_loss = Decibels(25);
