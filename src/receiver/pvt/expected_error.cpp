@@ -44,15 +44,18 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
     return expected;
 }
 
-double NoiseScale::of(const SinglePoint& solution, bool consistent, GpsTime time) {
-    constexpr double averaged_over_s = 20, believed_after_s = 10, least = 0.3, most = 10;
+double NoiseScale::of(const SinglePoint& solution, const ResidualTest& test, GpsTime time) {
+    constexpr double averaged_over_s = 20, believed_after_s = 10, least = 0.3, most = 10, most_of_all = 50;
     // Of a held height the residuals say nothing.
     if (solution.redundancy <= 0 || solution.height_held) return 1;
     const double seen = std::clamp(std::sqrt(solution.statistic / solution.redundancy), least, most);
+    const double of_all = std::clamp(test.of_all, seen, most_of_all);
     if (!since_) since_ = last_ = time;
-    average_ += (1 - std::exp(-std::max(difference(time, last_).value(), 0.0) / averaged_over_s)) * (seen - average_);
+    const double fresh = -std::expm1(-std::max(difference(time, last_).value(), 0.0) / averaged_over_s);
+    average_ += fresh * (seen - average_);
+    of_all_ += fresh * (of_all - of_all_);
     last_ = time;
-    const double scale = consistent ? average_ : std::max(average_, seen);
+    const double scale = std::max({average_, of_all_, test.consistent ? 0 : seen});
     if (filter_ == FilterKind::none) return scale;
     return scale * std::sqrt(1 + 4 * std::exp(-difference(time, *since_).value() / believed_after_s));
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "base/geo/local_frame.hpp"
+#include "receiver/pvt/integrity.hpp"
 #include "receiver/pvt/navigation_parameters.hpp"
 #include "receiver/pvt/single_point.hpp"
 #include "world/flow/fix.hpp"
@@ -52,7 +53,8 @@ bool leaves_delays(const NavigationParameters& parameters);
 ExpectedError expected_error_left(SinglePoint solution, const NavigationParameters& parameters,
                                   const SiteCorrections& air);
 
-/// By how much the noise of a solution is larger than its weights expect, as its residuals say, over some seconds. A
+/// By how much the noise of a solution is larger than its weights expect, as its residuals say, over some seconds: with
+/// those of satellites that were excluded, since a place with some of them has more that pass unseen. A
 /// receiver with a filter believes itself less than half as much at first, until the filter has averaged: ours, after a
 /// u-blox that reported 6.5 m, 2.9 m after 10 s and 1.7 m after 30 s (receivers/besancon_20250425_ublox).
 ///
@@ -60,9 +62,9 @@ ExpectedError expected_error_left(SinglePoint solution, const NavigationParamete
 class NoiseScale {
 public:
     explicit NoiseScale(FilterKind filter) : filter_(filter) {}
-    /// @param consistent the residuals' test was passed: else they count at once
-    double of(const SinglePoint& solution, bool consistent, GpsTime time);
-    /// By the residuals of the last seconds alone.
+    /// @param test where it was not passed, the residuals count at once
+    double of(const SinglePoint& solution, const ResidualTest& test, GpsTime time);
+    /// By the residuals of the last seconds alone, of the satellites that were used.
     [[nodiscard]] double average() const { return average_; }
     void reset() { *this = NoiseScale(filter_); }
 
@@ -70,7 +72,7 @@ private:
     FilterKind filter_;
     std::optional<GpsTime> since_;
     GpsTime last_;
-    double average_ = 1;
+    double average_ = 1, of_all_ = 1;
 };
 
 /// The same solution with so much more noise.

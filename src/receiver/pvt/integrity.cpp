@@ -3,6 +3,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -49,7 +50,9 @@ std::optional<CheckedSolution> IntegrityMonitor::solve(std::span<RangeEquation> 
                                                        const SinglePointSetup& setup) {
     std::optional<SinglePoint> solution = solve_single_point(equations, setup);
     if (!solution) return std::nullopt;
-    CheckedSolution checked{std::move(*solution), {}, true};
+    CheckedSolution checked{std::move(*solution), {}, {}};
+    if (checked.solution.redundancy > 0)
+        checked.test.of_all = std::sqrt(checked.solution.statistic / checked.solution.redundancy);
     if (!parameters_.enabled) return checked;
     SinglePointSetup again = setup;
     const auto fits = [this](const SinglePoint& s) {
@@ -70,7 +73,7 @@ std::optional<CheckedSolution> IntegrityMonitor::solve(std::span<RangeEquation> 
         checked.excluded.push_back(equations[*suspect].satellite);
         checked.solution = std::move(*without);
     }
-    checked.consistent = fits(checked.solution);
+    checked.test.consistent = fits(checked.solution);
     return checked;
 }
 

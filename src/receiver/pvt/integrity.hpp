@@ -20,11 +20,17 @@ inline constexpr double soundest_pdop = 6;
 /// @param degrees of freedom, from 1  @param probability above 0, below 1
 double chi_square_threshold(int degrees, double probability);
 
+/// What the residuals say.
+struct ResidualTest {
+    bool consistent = true;  ///< the test was passed, after all exclusions; true without redundancy
+    double of_all = 1;       ///< √(Σ r²/σ² / redundancy) before any exclusion; 1 without redundancy
+};
+
 /// A solution whose residuals were looked at.
 struct CheckedSolution {
     SinglePoint solution;
     std::vector<SatelliteId> excluded;
-    bool consistent = true;  ///< by the test after all exclusions; true without redundancy
+    ResidualTest test;
 };
 
 /// Receiver autonomous integrity monitoring.

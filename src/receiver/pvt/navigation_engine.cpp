@@ -32,7 +32,8 @@ GpsTime whole_millisecond(GpsTime time) { return std::chrono::round<std::chrono:
 struct EpochSolution : EpochEquations {
     std::optional<SinglePoint> point;
     std::optional<SinglePointVelocity> velocity;
-    bool consistent = true, time_only = false;
+    ResidualTest test;
+    bool time_only = false;
 };
 
 }  // namespace
@@ -177,7 +178,7 @@ void NavigationEngine::State::solve_position(const ReceiverSettings& settings, E
     if (setup.held_height) checked = monitor_.solve(epoch.equations, setup);
     if (!checked) return;
     epoch.point = std::move(checked->solution);
-    epoch.consistent = checked->consistent;
+    epoch.test = checked->test;
 }
 
 void NavigationEngine::State::solve_doppler(EpochSolution& epoch) const {
@@ -248,7 +249,7 @@ void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, cons
 
 // Returns 1 σ of the height, whatever the receiver reports.
 Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix) {
-    const double scale = parameters_.accuracy.position_scale * noise_.of(*epoch.point, epoch.consistent, time_);
+    const double scale = parameters_.accuracy.position_scale * noise_.of(*epoch.point, epoch.test, time_);
     const SinglePoint point = with_noise(*epoch.point, scale);
     const bool left = corrected_ == CorrectionState::none && leaves_delays(parameters_);
     const bool augmented = left && differential_kind() == DifferentialKind::sbas;
@@ -293,7 +294,8 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
     filtered.position = point.position;
     if (epoch.velocity) filtered.velocity = epoch.velocity->velocity;
     if (parameters_.filter.kind == FilterKind::smoothed) {
-        PositionInput input{time_, point.position, Metres(std::sqrt(point.covariance.trace())), std::nullopt, {}};
+        const Metres deviation(std::max(1.0, noise_.average()) * std::sqrt(point.covariance.trace()));
+        PositionInput input{time_, point.position, deviation, std::nullopt, {}};
         if (epoch.velocity) {
             input.velocity = epoch.velocity->velocity;
             input.velocity_deviation = MetresPerSecond(std::sqrt(epoch.velocity->covariance.trace()));

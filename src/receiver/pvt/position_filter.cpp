@@ -12,9 +12,11 @@ using Eigen::Vector3d;
 constexpr double tolerated_lag_m = 0.01;
 // Standard deviations of the velocity's noise that are not taken for a manoeuvre.
 constexpr double quiet_deviations = 3;
-// An innovation beyond these is a jump, which is followed at once.
+// An innovation beyond these is a jump, which is followed within some seconds, as an LEA-6 glides to another place
+// (tools/validate, trees); a farther one at once.
 constexpr double jump_deviations = 6;
 constexpr double jump_floor_m = 5;
+constexpr double glide_s = 2, farthest_glide_m = 1000;
 // Epochs farther apart than this do not share a path.
 constexpr double longest_gap_s = 10;
 
@@ -163,10 +165,12 @@ FilteredPosition PositionFilter::update(const PositionInput& measured, const Rec
         double unsure = 0;
         const Vector3d predicted = position_ + way(dt, input, unsure);
         const Vector3d innovation = input.position.vector() - predicted;
-        if (innovation.norm() > jump_floor_m + jump_deviations * input.deviation.value()) {
+        const bool jumps = innovation.norm() > jump_floor_m + jump_deviations * input.deviation.value();
+        if (jumps && innovation.norm() > farthest_glide_m) {
             start(input);
         } else {
-            const double share = gain(dt, unsure, settings);
+            const double caught_up = jumps ? -std::expm1(-dt / glide_s) : 0;
+            const double share = std::max(gain(dt, unsure, settings), caught_up);
             position_ = predicted + share * innovation;
             averaged_ = 1 / share;
             lag(input.velocity->vector() - *velocity, dt);
