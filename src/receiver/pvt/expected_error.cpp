@@ -45,15 +45,17 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
 }
 
 double NoiseScale::of(const SinglePoint& solution, const ResidualTest& test, GpsTime time) {
-    constexpr double averaged_over_s = 20, believed_after_s = 10, least = 0.3, most = 10, most_of_all = 50;
+    constexpr double averaged_over_s = 20, doubted_after_s = 3, believed_after_s = 10;
+    constexpr double least = 0.3, most = 10, most_of_all = 50;
     // Of a held height the residuals say nothing.
     if (solution.redundancy <= 0 || solution.height_held) return 1;
     const double seen = std::clamp(std::sqrt(solution.statistic / solution.redundancy), least, most);
     const double of_all = std::clamp(test.of_all, seen, most_of_all);
     if (!since_) since_ = last_ = time;
-    const double fresh = -std::expm1(-std::max(difference(time, last_).value(), 0.0) / averaged_over_s);
-    average_ += fresh * (seen - average_);
-    of_all_ += fresh * (of_all - of_all_);
+    const double dt = std::max(difference(time, last_).value(), 0.0);
+    const auto fresh = [dt](double over_s) { return -std::expm1(-dt / over_s); };
+    average_ += fresh(averaged_over_s) * (seen - average_);
+    of_all_ += fresh(of_all > of_all_ ? doubted_after_s : averaged_over_s) * (of_all - of_all_);
     last_ = time;
     const double scale = std::max({average_, of_all_, test.consistent ? 0 : seen});
     if (filter_ == FilterKind::none) return scale;

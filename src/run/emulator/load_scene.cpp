@@ -280,6 +280,8 @@ RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double ep
     settings.epochs_per_second = epochs_per_second;
     settings.diffraction = entry.diffraction;
     if (!modern) return settings;
+    settings.scattering.coefficient = entry.scattering;
+    settings.scattering.seed = scenario.run.seed;
     const ModernPropagationParameters& propagation = scenario.model.modern.propagation;
     settings.crowns = {propagation.loss_model.canopy_db_per_m, propagation.loss_model.most_foliage,
                        entry.foliage ? propagation.foliage.factor() : 0};

@@ -83,6 +83,8 @@ void read_path_keys(TableReader& table, SceneEntry& scene) {
     table.boolean("roofs_reflect", scene.roofs_reflect, "roofs besides walls");
     table.boolean("ground_reflects", scene.ground_reflects, {"ground besides walls", "modern alone"});
     table.boolean("diffraction", scene.diffraction, "modern: rays around edges");
+    table.number("scattering", scene.scattering, {0, 1},
+                 "modern: amplitude that rough walls scatter of what falls on them; 0: none");
     table.boolean("foliage", scene.foliage, "modern: the trees of the model weaken what passes them");
     table.integer("rays", scene.rays, {0, 1 << 22}, "of a search over the whole hemisphere; 0: by the epoch rate");
     table.integer(

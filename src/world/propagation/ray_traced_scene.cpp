@@ -39,6 +39,7 @@ struct ArrivingSatellite {
     const SatellitePaths& found;
     Hertz carrier;
     Decibels around;  ///< foliage loss that the arrival has already, of crowns wherever the antenna is
+    const WallScattering& scattering;
 };
 
 /// What the direct ray loses.
@@ -52,6 +53,8 @@ public:
     SceneRays(const UrbanScene& scene, const RayTracedSceneSettings& settings);
     /// Every ray but the direct one, −40 dB or stronger; strongest first.
     [[nodiscard]] std::vector<ArrivingRay> beside_direct(const ArrivingSatellite& arriving) const;
+    /// What walls scatter, −40 dB or stronger.
+    [[nodiscard]] std::vector<ArrivingRay> scattered(const ArrivingSatellite& arriving) const;
     /// Of a satellite in sight.
     [[nodiscard]] DirectLoss direct_loss(const ArrivingSatellite& arriving) const;
 
@@ -162,6 +165,17 @@ std::vector<ArrivingRay> SceneRays::beside_direct(const ArrivingSatellite& arriv
     return rays;
 }
 
+std::vector<ArrivingRay> SceneRays::scattered(const ArrivingSatellite& arriving) const {
+    std::vector<ArrivingRay> rays;
+    for (const ScatteredGroup& group : arriving.scattering.of(arriving.satellite, arriving.carrier)) {
+        const double amplitude = std::abs(group.amplitude);
+        if (amplitude < faintest_ray) continue;
+        rays.push_back({group.from, group.excess, 0, amplitude * gain_over_direct(arriving, group.from),
+                        Angle::radians(-std::arg(group.amplitude)), 1});
+    }
+    return rays;
+}
+
 DirectLoss SceneRays::direct_loss(const ArrivingSatellite& arriving) const {
     DirectLoss loss;
     loss.foliage = crown_loss(arriving, {});
@@ -240,7 +254,10 @@ void arrive_by_rays(Arrival& arrival, const SceneRays& city, const ArrivingSatel
     arrival.line_of_sight = arriving.found.line_of_sight;
     arrival.echoes_known = true;
     arrival.echoes.clear();
-    const std::vector<ArrivingRay> rays = city.beside_direct(arriving);
+    std::vector<ArrivingRay> rays = city.beside_direct(arriving);
+    if (!arrival.line_of_sight && rays.empty()) return hide(arrival);
+    const std::vector<ArrivingRay> scattered = city.scattered(arriving);
+    rays.insert(rays.end(), scattered.begin(), scattered.end());
     if (arrival.line_of_sight) {
         const DirectLoss loss = city.direct_loss(arriving);
         arrival.reflection_loss = loss.edges;
@@ -249,7 +266,6 @@ void arrive_by_rays(Arrival& arrival, const SceneRays& city, const ArrivingSatel
         direct.amplitude = amplitude_of(loss.edges + loss.foliage);
         return follow(arrival, direct, rays, arriving.to_antenna);
     }
-    if (rays.empty()) return hide(arrival);
     arrival.reflection_loss = Decibels(-20 * std::log10(rays.front().amplitude));
     follow(arrival, rays.front(), std::span(rays).subspan(1), arriving.to_antenna);
 }
@@ -257,7 +273,9 @@ void arrive_by_rays(Arrival& arrival, const SceneRays& city, const ArrivingSatel
 }  // namespace
 
 RayTracedScene::RayTracedScene(std::shared_ptr<const UrbanScene> scene, const RayTracedSceneSettings& settings)
-    : finder_(std::move(scene), search_of(settings)), settings_(settings) {}
+    : finder_(std::move(scene), search_of(settings)),
+      settings_(settings),
+      scattering_(finder_.scene(), settings.scattering) {}
 
 void RayTracedScene::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
     assert(arrivals.satellites.size() == sky.satellites.size());
@@ -271,6 +289,7 @@ void RayTracedScene::apply(Arrivals& arrivals, const SkyView& sky, const TruthSt
         satellites.push_back(in_scene(frame, antenna, seen));
     paths_ = finder_.epoch(observer_, satellites);
 
+    if (settings_.profile == SceneProfile::modern) scattering_.look_around(observer_);
     const SceneRays city(scene(), settings_);
     const Eigen::Matrix3d to_antenna = turn_to_antenna(frame, antenna);
     for (std::size_t i = 0; i < arrivals.satellites.size(); ++i) {
@@ -278,9 +297,9 @@ void RayTracedScene::apply(Arrivals& arrivals, const SkyView& sky, const TruthSt
         if (settings_.profile == SceneProfile::baseline)
             arrive_by_article(arrival, paths_[i]);
         else
-            arrive_by_rays(
-                arrival, city,
-                {observer_, to_antenna, satellites[i], paths_[i], first_carrier(arrival), arrival.foliage_loss});
+            arrive_by_rays(arrival, city,
+                           {observer_, to_antenna, satellites[i], paths_[i], first_carrier(arrival),
+                            arrival.foliage_loss, scattering_});
     }
     notice_.reset();
     const auto arrives = [](const Arrival& arrival) { return arrival.paths > 0; };

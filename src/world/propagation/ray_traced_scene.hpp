@@ -8,6 +8,7 @@
 
 #include "world/propagation/antenna_and_noise.hpp"
 #include "world/propagation/propagation_effect.hpp"
+#include "world/propagation/wall_scattering.hpp"
 #include "world/scene/path_finder.hpp"
 
 namespace skyloop::inline world {
@@ -40,6 +41,7 @@ struct RayTracedSceneSettings {
     Decibels opposite_hand_rejection{10};  ///< modern: of the antenna; 10 a patch, 20 a survey antenna
     Metres wall_roughness{0.01};           ///< modern: rms height
     bool diffraction = true;               ///< modern
+    WallScatteringSettings scattering{};   ///< modern
     CrownLoss crowns{};                    ///< modern
 };
 
@@ -47,7 +49,8 @@ struct RayTracedSceneSettings {
 /// adds to foliage_loss. It comes after the other losses and before the link budget.
 ///
 /// Materials that surface_material() does not know are taken for concrete. Strengths are those of the first carrier.
-/// Rays that bend and are reflected as well are not followed.
+/// Rays that bend and are reflected as well are not followed. What walls scatter comes to what arrives otherwise; it
+/// alone is not tracked.
 ///
 /// State: the path finder's memory.
 class RayTracedScene : public PropagationEffect {
@@ -69,6 +72,7 @@ private:
     PathFinder finder_;
     RayTracedSceneSettings settings_;
     SceneObserver observer_;
+    WallScattering scattering_;
     std::vector<SatellitePaths> paths_;
     std::optional<std::string> notice_;
 };

@@ -41,6 +41,7 @@ RayTracedSceneSettings plain_settings(SceneProfile profile) {
     settings.antenna = AntennaPattern(Decibels(0), Decibels(0), 1);
     settings.wall_roughness = Metres(0);
     settings.diffraction = false;
+    settings.scattering.coefficient = 0;
     settings.search.rays = 8192;
     settings.search.ground_reflects = profile == SceneProfile::modern;
     return settings;

@@ -43,6 +43,7 @@ TEST(ScenarioScene, EveryKeyLandsInItsField) {
     EXPECT_TRUE(scene.roofs_reflect);
     EXPECT_EQ(scene.ground_reflects, false);
     EXPECT_FALSE(scene.diffraction);
+    EXPECT_EQ(scene.scattering, 0.25);
     EXPECT_FALSE(scene.foliage);
     EXPECT_EQ(scene.rays, 4096);
     EXPECT_EQ(scene.threads, 0);

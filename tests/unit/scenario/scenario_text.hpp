@@ -156,6 +156,7 @@ reflections = 5
 roofs_reflect = true
 ground_reflects = false
 diffraction = false
+scattering = 0.25
 foliage = false
 rays = 4096
 threads = 0
