@@ -124,14 +124,18 @@ ArrivingRay SceneRays::reflected(const ArrivingSatellite& arriving, const SceneP
     }
     const CircularWave wave = reflected_wave(surfaces, path.arrival, arriving.carrier, settings_.wall_roughness);
     const std::complex<double> heard = heard_by_right_hand(wave, settings_.opposite_hand_rejection);
-    // Where its rays turn is worked out for trees alone.
-    const Decibels crowns = scene_.foliage().empty()
-                                ? Decibels(0)
-                                : crown_loss(arriving, reflection_points(scene_, path, arriving.observer.position));
+    // Where its rays turn is worked out for trees and rough walls alone.
+    Decibels loss(0);
+    if (!scene_.foliage().empty() || arriving.scattering.acts()) {
+        const std::vector<Eigen::Vector3d> turns = reflection_points(scene_, path, arriving.observer.position);
+        loss = crown_loss(arriving, turns);
+        for (const Eigen::Vector3d& turn : turns)
+            loss += arriving.scattering.unevenness(turn);
+    }
     return {path.arrival,
             path.excess,
             path.excess_rate,
-            std::abs(heard) * amplitude_of(crowns) * gain_over_direct(arriving, path.arrival),
+            std::abs(heard) * amplitude_of(loss) * gain_over_direct(arriving, path.arrival),
             Angle::radians(-std::arg(heard)),
             path.reflections()};
 }

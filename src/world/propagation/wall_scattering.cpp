@@ -56,7 +56,7 @@ void WallScattering::look_around(const SceneObserver& observer) {
     constexpr double steepest = 0.5;  // of a wall's normal, its sine of elevation
     observer_ = observer;
     pieces_.clear();
-    if (!(settings_.coefficient > 0)) return;
+    if (!acts()) return;
     std::vector<SceneRay> rays;
     for (const Eigen::Vector3d& direction : around)
         rays.push_back({observer.position, direction});
@@ -70,6 +70,13 @@ void WallScattering::look_around(const SceneObserver& observer) {
         const Eigen::Vector3d place = observer.position + hits[i].distance * rays[i].direction;
         pieces_.push_back({place, rays[i].direction, normal, hits[i].distance, roughness_at(settings_.seed, place)});
     }
+}
+
+Decibels WallScattering::unevenness(const Eigen::Vector3d& place) const {
+    constexpr double spread_db = 5, cell = 0.6 / noise_correlation_cells;
+    if (!acts()) return Decibels(0);
+    const std::array cells{place.x() / cell, place.y() / cell, place.z() / cell};
+    return Decibels(spread_db * smooth_noise(spread_bits(settings_.seed), cells));
 }
 
 std::array<ScatteredGroup, WallScattering::group_count> WallScattering::of(const SceneSatellite& satellite,
