@@ -53,7 +53,7 @@ struct SceneEntry {
     bool roofs_reflect = false;           ///< besides walls
     std::optional<bool> ground_reflects;  ///< nothing: in the modern model alone
     bool diffraction = true;              ///< modern: at edges
-    double scattering = 0.4;              ///< modern: coefficient of rough walls
+    double scattering = 0.6;              ///< modern: coefficient of rough walls
     bool foliage = true;                  ///< modern: the scene's own trees
     int rays = 0;                         ///< of a search, of the whole hemisphere; 0: by the epoch rate
     std::optional<int> threads;           ///< of each receiver, that search beside the loop; nothing: 1, of led runs 0
