@@ -44,7 +44,7 @@ TEST(IntegrityMonitor, ExcludesFaultsOneByOne) {
         ASSERT_TRUE(one);
         ASSERT_EQ(one->excluded.size(), 1U);
         EXPECT_EQ(one->excluded[0], equations[fault].satellite);
-        EXPECT_TRUE(one->consistent);
+        EXPECT_TRUE(one->test.consistent);
         EXPECT_FALSE(one->solution.ranges[fault].used);
         EXPECT_LT((one->solution.position.vector() - receiver.position).norm(), 1e-6);
         EXPECT_NEAR(one->solution.ranges[fault].residual.value(), 100, 1e-4);
@@ -58,7 +58,7 @@ TEST(IntegrityMonitor, ExcludesFaultsOneByOne) {
     const auto three = monitor.solve(equations, {.time = sample_time});
     ASSERT_TRUE(three);
     EXPECT_EQ(three->excluded.size(), 3U) << "the most that is allowed";
-    EXPECT_FALSE(three->consistent);
+    EXPECT_FALSE(three->test.consistent);
     IntegrityMonitor off({.enabled = false});
     const auto all = off.solve(copy, {.time = sample_time});
     ASSERT_TRUE(all);
@@ -84,7 +84,7 @@ TEST(IntegrityMonitor, LetsNoisePass) {
             equations[i].pseudorange += Metres(std::sqrt(clean->ranges[i].variance) * noise.normal());
         SinglePointSetup setup{.time = sample_time};
         setup.start = clean->position;
-        alarms += strict.solve(equations, setup)->consistent ? 0 : 1;
+        alarms += strict.solve(equations, setup)->test.consistent ? 0 : 1;
         exclusions += static_cast<int>(usual.solve(equations, setup)->excluded.size());
     }
     EXPECT_NEAR(alarms, 30, 20);
@@ -102,7 +102,7 @@ TEST(IntegrityMonitor, TellsButDoesNotGuessWithOneRedundantRange) {
     const auto checked = monitor.solve(equations, {.time = sample_time});
     ASSERT_TRUE(checked);
     EXPECT_TRUE(checked->excluded.empty());
-    EXPECT_FALSE(checked->consistent);
+    EXPECT_FALSE(checked->test.consistent);
 }
 
 }  // namespace
