@@ -62,7 +62,7 @@ constexpr FaultKind surroundings_fault{
     "surroundings",
     "What stands around the antenna: shadowing, fading and echoes of the words of model.modern.surroundings, in place "
     "of "
-    "those that are there. (`modern` only.)",
+    "those that are there.",
     "A drive under trees, between houses, into a tunnel; a vehicle that is carried indoors.",
     ParameterList{word_parameter("around", "", surroundings_names, "what stands there").that_is_needed()},
     make_surroundings,
