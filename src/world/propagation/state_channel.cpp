@@ -194,13 +194,15 @@ void StateChannel::set_gain(ChannelEcho& echo, const std::array<Ray, rays_per_ec
                             const ChannelPlace& place) const {
     const double time = to_seconds(place.time.time_since_epoch()).value();
     const double amplitude = std::sqrt(echo.power / rays_per_echo);
+    constexpr double least_steady = 1e-3;  // what is left of a ray is faint then
     for (const Ray& ray : rays) {
         const double beat = ray.turns_per_metre.dot(place.velocity) + ray.frequency;
         const double turned = 2 * std::numbers::pi * beat * parameters_.averaging.value();
         const double steady = 1 / (1 + turned * turned);
+        echo.unsteady_power += amplitude * amplitude * (1 - steady);
+        if (steady < least_steady) continue;
         const double turns = ray.turns + ray.turns_per_metre.dot(place.east_north) + ray.frequency * time;
         echo.gain += std::polar(amplitude * std::sqrt(steady), 2 * std::numbers::pi * (turns - std::floor(turns)));
-        echo.unsteady_power += amplitude * amplitude * (1 - steady);
     }
 }
 
@@ -211,15 +213,20 @@ void StateChannel::set_echoes(ChannelSample& sample, SatelliteId satellite, cons
     const Eigen::Vector2d there =
         here + ahead * (place.velocity + parameters_.creep.value() * Eigen::Vector2d(0.8, 0.6));
     double sum = 0;
+    std::size_t strongest = 0;
     for (std::size_t group = 0; group < sample.echoes.size(); ++group) {
         const std::uint64_t key = key_of(seed_, satellite, group);
         const EchoPlace now = echo_at(key, group, here, parameters_);
         ChannelEcho& echo = sample.echoes[group];
         echo.power = now.weight;
         echo.excess = Metres(now.excess);
-        echo.excess_rate = MetresPerSecond((echo_at(key, group, there, parameters_).excess - now.excess) / ahead);
         sum += now.weight;
+        if (now.weight > sample.echoes[strongest].power) strongest = group;
     }
+    // The others' is nowhere asked for.
+    ChannelEcho& trackable = sample.echoes[strongest];
+    const double later = echo_at(key_of(seed_, satellite, strongest), strongest, there, parameters_).excess;
+    trackable.excess_rate = MetresPerSecond((later - trackable.excess.value()) / ahead);
     const double diffuse = std::pow(10, sample.diffuse.value() / 10);
     for (std::size_t group = 0; group < sample.echoes.size(); ++group) {
         sample.echoes[group].power *= diffuse / sum;

@@ -27,11 +27,11 @@ struct ChannelPlace {
 
 /// One group of scattered rays.
 struct ChannelEcho {
-    double power = 0;           ///< mean, over that of the direct ray in the open
-    std::complex<double> gain;  ///< at this place, over that amplitude, as far as it lasts through the averaging
-    double unsteady_power = 0;  ///< mean power of the rays that beat too fast for that
-    Metres excess;              ///< over the direct ray
-    MetresPerSecond excess_rate;
+    double power = 0;             ///< mean, over that of the direct ray in the open
+    std::complex<double> gain;    ///< at this place, over that amplitude, as far as it lasts through the averaging
+    double unsteady_power = 0;    ///< mean power of the rays that beat too fast for that
+    Metres excess;                ///< over the direct ray
+    MetresPerSecond excess_rate;  ///< of the strongest group; else 0
 };
 
 /// What a satellite's signals meet.
