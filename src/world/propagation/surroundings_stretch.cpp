@@ -30,6 +30,8 @@ Polygon polygon_around(const Geodetic& place, const StretchOfPlace& area) {
     return polygon;
 }
 
+Line edges_of(const Polygon& polygon) { return {polygon.outer().begin(), polygon.outer().end()}; }
+
 double weight_of(double since, double left, double ramp) {
     const double nearer = std::min(since, left);
     if (nearer < 0) return 0;
@@ -39,13 +41,14 @@ double weight_of(double since, double left, double ramp) {
 // From the origin straight on until the polygon ends; where there is no heading, to its nearest edge.
 double way_to_edge(const Polygon& polygon, std::optional<Angle> heading) {
     const Point here(0, 0);
-    const double nearest = bg::distance(here, bg::exterior_ring(polygon));
+    const Line edges = edges_of(polygon);
+    const double nearest = bg::distance(here, edges);
     if (!heading) return nearest;
     constexpr double farther_than_any = 1e6;
     const Line ahead{here,
                      Point(farther_than_any * std::sin(heading->rad()), farther_than_any * std::cos(heading->rad()))};
     std::vector<Point> crossings;
-    bg::intersection(ahead, bg::exterior_ring(polygon), crossings);
+    bg::intersection(ahead, edges, crossings);
     double way = farther_than_any;
     for (const Point& crossing : crossings)
         way = std::min(way, bg::distance(here, crossing));
@@ -74,7 +77,7 @@ struct PlaceFinder {
         const Polygon polygon = polygon_around(antenna.place, area);
         const Point here(0, 0);
         if (!bg::covered_by(here, polygon)) return {};
-        const double edge = bg::distance(here, bg::exterior_ring(polygon));
+        const double edge = bg::distance(here, edges_of(polygon));
         const auto back = antenna.heading ? std::optional(*antenna.heading + Angle::degrees(180)) : std::nullopt;
         return {weight_of(edge, edge, ramp), true, way_to_edge(polygon, back), way_to_edge(polygon, antenna.heading)};
     }

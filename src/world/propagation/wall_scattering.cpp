@@ -76,7 +76,7 @@ Decibels WallScattering::unevenness(const Eigen::Vector3d& place) const {
     constexpr double spread_db = 5, cell = 0.6 / noise_correlation_cells;
     if (!acts()) return Decibels(0);
     const std::array cells{place.x() / cell, place.y() / cell, place.z() / cell};
-    return Decibels(spread_db * smooth_noise(spread_bits(settings_.seed), cells));
+    return Decibels(spread_db * std::max(smooth_noise(spread_bits(settings_.seed), cells), 0.0));
 }
 
 std::array<ScatteredGroup, WallScattering::group_count> WallScattering::of(const SceneSatellite& satellite,

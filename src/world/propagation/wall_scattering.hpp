@@ -42,8 +42,8 @@ public:
     WallScattering(const UrbanScene& scene, const WallScatteringSettings& settings);
     [[nodiscard]] bool acts() const { return settings_.coefficient > 0; }
     void look_around(const SceneObserver& observer);
-    /// What the place of a specular reflection takes of it against the whole wall: windows, frames and balconies as a
-    /// normal field of dB over the façade, σ 5 dB, 1/e after 0.6 m. Ours.
+    /// What the place of a specular reflection takes of it: frames and balconies as a normal field over the façade, of
+    /// σ 5 dB and 1/e after 0.6 m, whose lower half, windows, takes nothing. Ours.
     [[nodiscard]] Decibels unevenness(const Eigen::Vector3d& place) const;
     /// Groups by excess: below 15 m, below 60 m, beyond. A piece that the satellite does not shine on gives nothing.
     [[nodiscard]] std::array<ScatteredGroup, group_count> of(const SceneSatellite& satellite, Hertz carrier) const;

@@ -290,6 +290,7 @@ TEST(SignalFaultKinds, ChangeNothingAtAStrengthOfZero) {
         {"jamming", {{"j_to_s_db", 50.}}},
         {"jamming", {{"jammer_at", std::vector<double>{46.48, 30.73}}, {"eirp_dbw", 0.}}},
         {"multipath_burst", {{"share", 1.}}},
+        {"surroundings", {{"around", std::string("urban")}}},
         {"spoof_takeover",
          {{"offset_m", std::vector<double>{100, 0, 0}}, {"aligned_s", 0.}, {"time_drift_ns_per_s", 10.}}},
         {"meaconing", {{"rebroadcast_at", std::vector<double>{46.48, 30.73}}}},

@@ -14,14 +14,14 @@ using namespace skyloop;
 
 constexpr Hertz l1{1575.42e6};
 
-// Two rows of houses along a street eastwards, 10 m to the north and south of the antenna, high and long enough that
-// they fill the directions towards them.
-std::shared_ptr<const UrbanScene> street_scene() {
+// Two rows of houses along a street eastwards, 10 m to the north and south of the antenna. Of 400 m they fill the
+// directions towards them.
+std::shared_ptr<const UrbanScene> street_scene(double top = 400) {
     CityModel city;
     city.origin = test::odessa_place;
     const std::uint8_t brick = city.material_index("brick");
     for (const double north : {-10.0, 10.0})
-        city.add_quad({Eigen::Vector3d(-3000, north, -50), {3000, north, -50}, {3000, north, 400}, {-3000, north, 400}},
+        city.add_quad({Eigen::Vector3d(-3000, north, -50), {3000, north, -50}, {3000, north, top}, {-3000, north, top}},
                       SurfaceKind::wall, brick);
     return *UrbanScene::build(city);
 }
@@ -81,7 +81,7 @@ TEST(WallScattering, GivesNothingWhereTheSatelliteDoesNotShine) {
 }
 
 TEST(WallScattering, BeatsAtRestAndFadesInMotion) {
-    const auto scene = street_scene();
+    const auto scene = street_scene(60);
     WallScattering scattering(*scene, {});
     scattering.look_around(standing());
     const auto strongest = [&](double elevation_deg) {

@@ -155,12 +155,14 @@ TEST(PositionFilter, HoldsBelowASpeedOfItsOwn) {
     EXPECT_FALSE(filter.update(input_at(10, home, Vector3d(0.6, 0, 0)), {}).held);
 }
 
-TEST(PositionFilter, FollowsAJumpAtOnce) {
+TEST(PositionFilter, GlidesToAJumpAndFollowsAFarOneAtOnce) {
     PositionFilter filter({});
     for (int s = 0; s < 100; ++s)
         filter.update(input_at(s, home, Vector3d::Zero()), {});
-    const Vector3d there = home + Vector3d(1000, 0, 0);
-    EXPECT_EQ(filter.update(input_at(100, there, Vector3d::Zero()), {}).position.vector(), there);
+    const Vector3d near = home + Vector3d(100, 0, 0), far = home + Vector3d(1200, 0, 0);
+    const double first = (filter.update(input_at(100, near, Vector3d::Zero()), {}).position.vector() - near).norm();
+    EXPECT_NEAR(first, 100 * std::exp(-0.5), 1e-6) << "with a memory of two seconds";
+    EXPECT_EQ(filter.update(input_at(101, far, Vector3d::Zero()), {}).position.vector(), far);
 }
 
 TEST(PositionFilter, HoldsASlowReceiverUntilItLeavesTheCircle) {

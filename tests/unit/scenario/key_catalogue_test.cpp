@@ -106,7 +106,8 @@ Samples numbers_around(const KeyEntry& key) {
         if (key.most < most_whole)
             samples.bad.push_back(number_text(key, key.most + std::max(1.0, std::abs(key.most) * 1e-3)));
     }
-    if (key.name == "when_inside") samples.good = {"-90", "90"};  // of its pairs the first is a latitude
+    if (key.name == "when_inside" || key.name == "inside")
+        samples.good = {"-90", "90"};  // of its pairs the first is a latitude
     if (samples.good.empty()) samples.good.emplace_back("1");
     if (key.type == KeyType::whole_number) samples.bad.emplace_back("1.5");
     if (key.type == KeyType::number) samples.bad.emplace_back("nan");

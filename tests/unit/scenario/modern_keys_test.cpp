@@ -349,7 +349,7 @@ TEST(ModernKeys, MistakesSayWhereAndWhat) {
               "'consumer'?");
     EXPECT_EQ(mistakes_of("[model.modern]\nsurroundings = \"open_sky\""),
               "test.toml:2:16: model.modern.surroundings: is 'open_sky'; expected one of open-sky rural residential "
-              "forest suburban-drive urban urban-canyon indoor-window; did you mean 'open-sky'?");
+              "forest suburban-drive urban urban-canyon indoor-window valley tunnel garage; did you mean 'open-sky'?");
     EXPECT_EQ(mistakes_of("[model.modern.terms.multipth]\nenabled = false"),
               "test.toml:1:21: model.modern.terms.multipth: unknown key; did you mean 'multipath'?");
     EXPECT_EQ(mistakes_of("[model.modern.terms.multipath]\nenabld = false"),
