@@ -94,9 +94,14 @@ struct EchoPlace {
     double weight, excess;
 };
 
-EchoPlace echo_at(std::uint64_t key, std::size_t group, const Eigen::Vector2d& place, const ChannelParameters& p) {
-    const std::array<double, 2> cells{place.x() / p.echo_length.value(), place.y() / p.echo_length.value()};
-    const double power = smooth_noise(key, cells), delay = smooth_noise(spread_bits(key), cells);
+using PlaneKnots = std::array<NoiseKnots, 2>;
+
+PlaneKnots plane_knots(const Eigen::Vector2d& place, double cell) {
+    return {NoiseKnots(place.x() / cell), NoiseKnots(place.y() / cell)};
+}
+
+EchoPlace echo_at(std::uint64_t key, std::size_t group, const PlaneKnots& place, const ChannelParameters& p) {
+    const double power = spline_noise(key, place), delay = spline_noise(spread_bits(key), place);
     constexpr double farthest = 1e-3;  // of the distribution, which is exponential
     const double beyond = std::max(1 - normal_distribution(delay), farthest);
     return {echo_shares.at(group) * std::pow(10, echo_spread_db * power / 10),
@@ -210,28 +215,30 @@ void StateChannel::set_echoes(ChannelSample& sample, SatelliteId satellite, cons
     const Rays& rays = rays_.of(satellite, [this](SatelliteId id) { return rays_of(id); });
     constexpr double ahead = 0.1;  // s
     const Eigen::Vector2d here = drifted(place, parameters_.creep);
-    const Eigen::Vector2d there =
-        here + ahead * (place.velocity + parameters_.creep.value() * Eigen::Vector2d(0.8, 0.6));
+    const PlaneKnots knots = plane_knots(here, parameters_.echo_length.value());
     double sum = 0;
     std::size_t strongest = 0;
     for (std::size_t group = 0; group < sample.echoes.size(); ++group) {
         const std::uint64_t key = key_of(seed_, satellite, group);
-        const EchoPlace now = echo_at(key, group, here, parameters_);
+        const EchoPlace now = echo_at(key, group, knots, parameters_);
         ChannelEcho& echo = sample.echoes[group];
         echo.power = now.weight;
         echo.excess = Metres(now.excess);
         sum += now.weight;
         if (now.weight > sample.echoes[strongest].power) strongest = group;
     }
-    // The others' is nowhere asked for.
-    ChannelEcho& trackable = sample.echoes[strongest];
-    const double later = echo_at(key_of(seed_, satellite, strongest), strongest, there, parameters_).excess;
-    trackable.excess_rate = MetresPerSecond((later - trackable.excess.value()) / ahead);
     const double diffuse = std::pow(10, sample.diffuse.value() / 10);
     for (std::size_t group = 0; group < sample.echoes.size(); ++group) {
         sample.echoes[group].power *= diffuse / sum;
         set_gain(sample.echoes[group], rays[group], place);
     }
+    ChannelEcho& tracked = sample.echoes[strongest];
+    const double direct = std::pow(10, (sample.direct - parameters_.roof).value() / 10);
+    if (tracked.power < direct) return;
+    const Eigen::Vector2d drift = place.velocity + parameters_.creep.value() * Eigen::Vector2d(0.8, 0.6);
+    const PlaneKnots there = plane_knots(here + ahead * drift, parameters_.echo_length.value());
+    const double later = echo_at(key_of(seed_, satellite, strongest), strongest, there, parameters_).excess;
+    tracked.excess_rate = MetresPerSecond((later - tracked.excess.value()) / ahead);
 }
 
 ChannelSample StateChannel::at(SatelliteId satellite, const SkyDirection& direction, const ChannelPlace& place) {
@@ -241,8 +248,10 @@ ChannelSample StateChannel::at(SatelliteId satellite, const SkyDirection& direct
     const double zenith = (90 - direction.elevation.deg()) / (parameters_.reach.deg() / noise_reach_cells);
     const double across = zenith * std::sin(direction.azimuth.rad()), up = zenith * std::cos(direction.azimuth.rad());
     const Eigen::Vector2d here = drifted(place, parameters_.creep);
+    const NoiseKnots across_knots(across), up_knots(up);
     const auto field = [&](std::uint64_t key, double cell) {
-        return smooth_noise(key, std::array{across, up, here.x() / cell, here.y() / cell});
+        const PlaneKnots plane = plane_knots(here, cell);
+        return spline_noise(key, std::array{across_knots, up_knots, plane[0], plane[1]});
     };
     const double scale = parameters_.distance_scale;
     const double obstacles = std::sqrt(n.short_share) * field(short_key_, short_cell_m * scale) +

@@ -31,7 +31,7 @@ struct ChannelEcho {
     std::complex<double> gain;    ///< at this place, over that amplitude, as far as it lasts through the averaging
     double unsteady_power = 0;    ///< mean power of the rays that beat too fast for that
     Metres excess;                ///< over the direct ray
-    MetresPerSecond excess_rate;  ///< of the strongest group; else 0
+    MetresPerSecond excess_rate;  ///< of the strongest group, where it outdoes the direct ray; else 0
 };
 
 /// What a satellite's signals meet.
