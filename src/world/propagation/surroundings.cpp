@@ -4,6 +4,29 @@ namespace skyloop::inline world {
 namespace {
 
 // Fitted to one record each by tools/validate: garden, trees, car, nagoya, canyon.
+ChannelParameters street_channel_of(bool narrow) {
+    ChannelParameters p;
+    p.environment = P681Environment::urban;
+    if (narrow) {
+        p.bad_odds = 0.7;
+        p.bad_loss = Decibels(10);
+        p.diffuse = Decibels(1);
+        p.reach = Angle::degrees(40);
+        p.beat = Hertz(0.006);
+        p.echo_delay = Metres(40);
+        p.echo_length = Metres(10);
+    } else {
+        p.distance_scale = 4;
+        p.bad_odds = 2;
+        p.bad_loss = Decibels(12);
+        p.diffuse = Decibels(5);
+        p.reach = Angle::degrees(90);  // the houses of one side of a street
+        p.echo_delay = Metres(150);
+        p.echo_length = Metres(7);
+    }
+    return p;
+}
+
 ChannelParameters fitted_channel_of(Surroundings surroundings) {
     ChannelParameters p;
     if (surroundings == Surroundings::residential) {
@@ -26,24 +49,8 @@ ChannelParameters fitted_channel_of(Surroundings surroundings) {
         p.bad_loss = Decibels(3);
         p.shadowing_scale = 1.5;
         p.echo_length = Metres(30);
-    } else if (surroundings == Surroundings::urban_canyon) {
-        p.environment = P681Environment::urban;
-        p.bad_odds = 0.7;
-        p.bad_loss = Decibels(10);
-        p.diffuse = Decibels(1);
-        p.reach = Angle::degrees(40);
-        p.beat = Hertz(0.006);
-        p.echo_delay = Metres(40);
-        p.echo_length = Metres(10);
     } else {
-        p.environment = P681Environment::urban;
-        p.distance_scale = 4;
-        p.bad_odds = 2;
-        p.bad_loss = Decibels(12);
-        p.diffuse = Decibels(5);
-        p.reach = Angle::degrees(90);  // the houses of one side of a street
-        p.echo_delay = Metres(150);
-        p.echo_length = Metres(7);
+        return street_channel_of(surroundings == Surroundings::urban_canyon);
     }
     return p;
 }
