@@ -21,11 +21,17 @@ constexpr std::uint64_t spread_bits(std::uint64_t x) {
 /// The key of a noise of its own. @param name what it is for
 std::uint64_t noise_key(std::uint64_t seed, std::string_view name);
 
-/// Standard normal but for its tails, which end at 3.5: the sum of four uniform numbers of 16 bits.
+/// The sum of the four numbers of 16 bits that 64 bits are; its mean and standard deviation.
+inline double quarters_of_bits(std::uint64_t bits) {
+    constexpr std::uint64_t every_other = 0x0000ffff0000ffffu;
+    const std::uint64_t pairs = (bits & every_other) + ((bits >> 16) & every_other);
+    return static_cast<double>((pairs & 0xffffffffu) + (pairs >> 32));
+}
+inline constexpr double quarters_mean = 2 * 65535, quarters_deviation = 65536 * 0.57735026918962576;  // √(4/12)
+
+/// Standard normal but for its tails, which end at 3.5.
 inline double normal_of_bits(std::uint64_t bits) {
-    const auto sum = (bits & 0xffffu) + ((bits >> 16) & 0xffffu) + ((bits >> 32) & 0xffffu) + (bits >> 48);
-    constexpr double unit = 65536 * 0.57735026918962576;  // √(4/12) of a uniform number's range
-    return (static_cast<double>(sum) - 2 * 65535) / unit;
+    return (quarters_of_bits(bits) - quarters_mean) / quarters_deviation;
 }
 
 /// Uniform in [0, 1).
@@ -50,21 +56,32 @@ struct NoiseKnots {
         for (std::size_t i = 0; i < 3; ++i)
             hashes[i] = spread_bits(static_cast<std::uint64_t>(first) + i);
     }
+    [[nodiscard]] double weight() const { return weights[0] + weights[1] + weights[2]; }
     std::array<double, 3> weights{};
     std::array<std::uint64_t, 3> hashes{};  // of the three
 };
 
-/// The sum of a quadratic spline over N coordinates, from that of number `Next` on.
+/// The sum of a quadratic spline over N coordinates, from that of number `Next` on; of quarters_of_bits(), which become
+/// normal in the end.
 template <std::size_t N, std::size_t Next = 0>
-double spline_noise(std::uint64_t key, const std::array<NoiseKnots, N>& knots) {
+double spline_sum(std::uint64_t key, const std::array<NoiseKnots, N>& knots) {
     if constexpr (Next == N) {
-        return normal_of_bits(key);
+        return quarters_of_bits(key);
     } else {
         double sum = 0;
         for (std::size_t i = 0; i < 3; ++i)
-            sum += knots[Next].weights[i] * spline_noise<N, Next + 1>(spread_bits(key ^ knots[Next].hashes[i]), knots);
+            sum += knots[Next].weights[i] * spline_sum<N, Next + 1>(spread_bits(key ^ knots[Next].hashes[i]), knots);
         return sum;
     }
+}
+
+/// The same as noise.
+template <std::size_t N>
+double spline_noise(std::uint64_t key, const std::array<NoiseKnots, N>& knots) {
+    double weight = 1;
+    for (const NoiseKnots& coordinate : knots)
+        weight *= coordinate.weight();
+    return (spline_sum(key, knots) - quarters_mean * weight) / quarters_deviation;
 }
 
 /// Standard normal everywhere, and smooth: its slope is continuous. @param cells coordinates, in cells of the lattice
