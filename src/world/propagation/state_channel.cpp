@@ -12,6 +12,7 @@ namespace skyloop::inline world {
 namespace {
 
 constexpr double node_spacing_deg = 5;
+constexpr double per_decibel = std::numbers::ln10 / 10;  // of a power
 // Two kinds of obstacles, trees and houses: of one kind alone the durations would all be alike. Ours; the table's mean
 // lengths of way from one change to the next, 38 m to some hundreds, lie between what the two give.
 constexpr double short_cell_m = 5, long_cell_m = 40;
@@ -104,7 +105,7 @@ EchoPlace echo_at(std::uint64_t key, std::size_t group, const PlaneKnots& place,
     const double power = spline_noise(key, place), delay = spline_noise(spread_bits(key), place);
     constexpr double farthest = 1e-3;  // of the distribution, which is exponential
     const double beyond = std::max(1 - normal_distribution(delay), farthest);
-    return {echo_shares.at(group) * std::pow(10, echo_spread_db * power / 10),
+    return {echo_shares.at(group) * std::exp(per_decibel * echo_spread_db * power),
             -echo_delays.at(group) * p.echo_delay.value() * std::log(beyond)};
 }
 
@@ -227,13 +228,13 @@ void StateChannel::set_echoes(ChannelSample& sample, SatelliteId satellite, cons
         sum += now.weight;
         if (now.weight > sample.echoes[strongest].power) strongest = group;
     }
-    const double diffuse = std::pow(10, sample.diffuse.value() / 10);
+    const double diffuse = std::exp(per_decibel * sample.diffuse.value());
     for (std::size_t group = 0; group < sample.echoes.size(); ++group) {
         sample.echoes[group].power *= diffuse / sum;
         set_gain(sample.echoes[group], rays[group], place);
     }
     ChannelEcho& tracked = sample.echoes[strongest];
-    const double direct = std::pow(10, (sample.direct - parameters_.roof).value() / 10);
+    const double direct = std::exp(per_decibel * (sample.direct - parameters_.roof).value());
     if (tracked.power < direct) return;
     const Eigen::Vector2d drift = place.velocity + parameters_.creep.value() * Eigen::Vector2d(0.8, 0.6);
     const PlaneKnots there = plane_knots(here + ahead * drift, parameters_.echo_length.value());

@@ -13,6 +13,7 @@ constexpr double faintest_echo = 0.02;  // amplitude over that of the tracked ra
 constexpr double faintest_power = 1e-5;
 
 Decibels roof_loss(Decibels roof, Angle elevation) {
+    if (roof == Decibels(0)) return roof;
     const double lowest = std::sin(Angle::degrees(35).rad());
     return roof * std::max(0.0, (std::sin(elevation.rad()) - lowest) / (1 - lowest));
 }
@@ -40,7 +41,7 @@ void add_echo(Arrival& arrival, const ChannelRay& ray, const ChannelRay& tracked
 }  // namespace
 
 void meet_surroundings(Arrival& arrival, const ChannelSample& sample, Decibels more_loss) {
-    const double over = std::pow(10, (sample.direct - more_loss).value() / 10);
+    const double over = std::exp(std::numbers::ln10 / 10 * (sample.direct - more_loss).value());
     const auto strongest = std::max_element(sample.echoes.begin(), sample.echoes.end(),
                                             [](const auto& a, const auto& b) { return a.power < b.power; });
     const bool direct = over >= strongest->power;
