@@ -94,12 +94,12 @@ Result<StretchOfPlace> stretch_of_place(const std::vector<Geodetic>& corners) {
         return fail(ErrorCode::input, fmt::format("has {} corners; expected at least three", corners.size()));
     StretchOfPlace place{corners};
     const Polygon polygon = polygon_around(corners.front(), place);
-    bg::validity_failure_type failure{};
-    bg::is_valid(polygon, failure);
-    if (failure == bg::failure_self_intersections)
-        return fail(ErrorCode::input, "has edges that cross; expected the corners in their order around the polygon");
-    if (failure != bg::no_failure)
+    Polygon around;
+    bg::convex_hull(polygon, around);
+    if (!(std::abs(bg::area(around)) > 0))
         return fail(ErrorCode::input, "has no area; expected corners of a polygon, around it");
+    if (!bg::is_simple(edges_of(polygon)))
+        return fail(ErrorCode::input, "has edges that cross; expected the corners in their order around the polygon");
     return place;
 }
 
