@@ -177,6 +177,8 @@ class Px4GpsSbf(Septentrio):
                      f"setSBFOutput, Stream1, {port}, PVTGeodetic+VelCovGeodetic+DOP+AttEuler+AttCovEuler, msec100"):
             self.told(line)
         self.parser.clear()
+        self.pump(0.2)
+        self.parser.noise.clear()  # the rest of a block that the end of the last second has cut
         self.forget()
         blocks = self.watch(self.blocks, 100)
         self.check_solution(blocks)
