@@ -60,11 +60,12 @@ Result<Fault> make_surroundings(const Parameters& parameters, const FaultContext
 
 constexpr FaultKind surroundings_fault{
     "surroundings",
-    "What stands around the antenna: shadowing, fading and echoes of the words of model.modern.surroundings, in place "
+    "Other surroundings of the antenna: shadowing, fading and echoes of the words of model.modern.surroundings, in "
+    "place "
     "of "
     "those that are there.",
     "A drive under trees, between houses, into a tunnel; a vehicle that is carried indoors.",
-    ParameterList{word_parameter("around", "", surroundings_names, "what stands there").that_is_needed()},
+    ParameterList{word_parameter("around", "", surroundings_names, "what surrounds the antenna").that_is_needed()},
     make_surroundings,
     of_measurements};
 

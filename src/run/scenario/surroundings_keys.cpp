@@ -127,11 +127,11 @@ void read_channel_keys(TableReader& table, ChannelParameters& p) {
 
 void read_surroundings(TableReader& top, Scenario& scenario) {
     ModernSettings& modern = scenario.model.modern;
-    const std::size_t told = top.idle_keys().size();
+    const std::size_t before = top.idle_keys().size();
     top.tables("surroundings", "surroundings along the way; of those that overlap, the last",
                [&](TableReader& t) { modern.propagation.stretches.push_back(read_stretch(t)); });
     const std::vector<std::string>& idle = top.idle_keys();
-    modern.idle_keys.insert(modern.idle_keys.end(), idle.begin() + static_cast<std::ptrdiff_t>(told), idle.end());
+    modern.idle_keys.insert(modern.idle_keys.end(), idle.begin() + static_cast<std::ptrdiff_t>(before), idle.end());
     if (scenario.model.sensor_model && !modern.propagation.stretches.empty())
         top.mistake("surroundings", "have no effect on a sensor model; expected model.kind = \"modern\"");
 }

@@ -106,7 +106,7 @@ Result<Reception> named_reception(const NamedTable& table, std::size_t column) {
 Result<CountsByTime> counted_receptions(NamedTable table, Angle lowest) {
     const auto columns = table.header({"time_utc", "elevation_deg", "line_of_sight", "paths"});
     if (!columns) return fail(columns.error());
-    const auto told = table.column_of("state");
+    const auto state = table.column_of("state");
     CountsByTime counts;
     while (table.next()) {
         const auto numbers = row_numbers(table, std::span(*columns).subspan(1), false);
@@ -115,7 +115,7 @@ Result<CountsByTime> counted_receptions(NamedTable table, Angle lowest) {
         auto& count = counts[std::string(table.cell((*columns)[0]))];
         const bool sight = *(*numbers)[1] != 0, some = *(*numbers)[2] > 0;
         const auto seen = sight ? Reception::line_of_sight : some ? Reception::reflected : Reception::blocked;
-        const auto reception = told ? named_reception(table, *told) : Result<Reception>(seen);
+        const auto reception = state ? named_reception(table, *state) : Result<Reception>(seen);
         if (!reception) return fail(reception.error());
         ++count.at(static_cast<std::size_t>(*reception));
     }

@@ -128,8 +128,10 @@ SurroundingsEffect::SurroundingsEffect(const SurroundingsParameters& parameters,
     : start_(parameters.start), factor_(term.factor()), roof_(parameters.everywhere.roof) {
     const std::uint64_t own = term.seed.value_or(seed);
     parts_.emplace_back(parameters.everywhere, own);
-    for (const SurroundingsStretch& stretch : parameters.stretches)
+    for (SurroundingsStretch stretch : parameters.stretches) {
+        stretch.channel.roof = roof_;  // the vehicle's
         parts_.emplace_back(stretch.channel, own).stretch = stretch;
+    }
 }
 
 ChannelPlace channel_place(const TruthState& truth) {
@@ -147,9 +149,8 @@ ChannelPlace channel_place(const TruthState& truth) {
     return place;
 }
 
-void SurroundingsEffect::move_to(const TruthState& truth) {
+void SurroundingsEffect::move_to(const TruthState& truth, const Eigen::Vector2d& velocity) {
     constexpr double slowest_heading = 0.5;  // m/s
-    const Eigen::Vector2d velocity = channel_place(truth).velocity;
     if (before_) antenna_.travelled += Metres((truth.position.vector() - before_->vector()).norm());
     before_ = truth.position;
     antenna_.place = truth.geodetic;
@@ -161,11 +162,11 @@ void SurroundingsEffect::move_to(const TruthState& truth) {
 }
 
 void SurroundingsEffect::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    move_to(truth);
+    ChannelPlace place = channel_place(truth);
+    move_to(truth, place.velocity);
     const bool acts = std::any_of(parts_.begin(), parts_.end(),
                                   [](const Part& part) { return part.place.inside && part.parameters.acts(); });
     if (factor_ == 0 || !acts) return;
-    ChannelPlace place = channel_place(truth);
     place.street = antenna_.heading;
     for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
         if (arrival.echoes_known || arrival.paths == 0) return;

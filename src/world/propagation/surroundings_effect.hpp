@@ -43,7 +43,7 @@ private:
         std::optional<SurroundingsStretch> stretch{};
         StretchPlace place{1, true, never, never};  // of the epoch
     };
-    void move_to(const TruthState& truth);
+    void move_to(const TruthState& truth, const Eigen::Vector2d& velocity);
 
     std::vector<Part> parts_;
     GpsTime start_;
