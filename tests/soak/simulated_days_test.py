@@ -18,7 +18,7 @@ SCENARIO = pathlib.Path(__file__).with_name("day.toml")
 CLIENTS = ("careful-ubx", "naive-ubx", "careful-nmea", "naive-nmea")
 # Of these `decode` knows the bytes.
 DECODED = ("ublox", "nmea", "mtk", "airoha")
-BETWEEN_LOOKS_S = 0.02
+BETWEEN_LOOKS_S = 0.01
 SAVER = """[run]
 start = 2026-03-01T00:00:00Z
 duration_s = {duration}
@@ -37,13 +37,14 @@ def boards():
     return [line.split()[0] for line in skyloop("boards").stdout.splitlines()]
 
 
-def watched(command):
-    """Runs it to its end; gives its exit code, what it said and how it grew."""
+def watched(command, out):
+    """Runs it to its end; gives its exit code, what it said and how it grew since its recording in `out` began."""
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
         growth = Growth(process.pid)
         pause = BETWEEN_LOOKS_S
         while process.poll() is None:
-            growth.look()
+            if any(out.glob("*")):
+                growth.look()
             time.sleep(pause)
             pause = min(pause * 1.01, 1)  # a long run is looked at less often
         return process.returncode, process.stderr.read(), growth
@@ -68,7 +69,7 @@ def day(board, client):
         out = pathlib.Path(name, "out")
         profile = septentrio_that_sends(name, "PVTGeodetic", "DOP") if board == "septentrio-sbf" else board
         code, said, growth = watched([SKYLOOP, "simulate", str(SCENARIO), "--board", str(profile), "--port",
-                                      f"client:{client}", "--duration", str(HOURS * 3600), "--out", str(out)])
+                                      f"client:{client}", "--duration", str(HOURS * 3600), "--out", str(out)], out)
         wrong = [] if code == 0 else [f"ended {code}: {said}"]
         if growth.fault():
             wrong.append(growth.fault())
@@ -94,11 +95,12 @@ def saving_day(board):
     with open_folder() as name:
         path = pathlib.Path(name, "saver.toml")
         path.write_text(SAVER.format(board=board, duration=HOURS * 3600))
-        code, said, growth = watched([SKYLOOP, "simulate", str(path), "--out", f"{name}/out"])
+        out = pathlib.Path(name, "out")
+        code, said, growth = watched([SKYLOOP, "simulate", str(path), "--out", str(out)], out)
         wrong = [] if code == 0 else [f"ended {code}: {said}"]
         if growth.fault():
             wrong.append(growth.fault())
-        starts = pathlib.Path(name, "out/port0.out").read_bytes().count(b"PROTVER")
+        starts = (out / "port0.out").read_bytes().count(b"PROTVER")
         if code == 0 and starts < HOURS * 3600 / 30 - 2:
             wrong.append(f"it came on {starts} times")
         return wrong, f"{starts} starts; {growth}"

@@ -106,7 +106,8 @@ def run(program, data, setup, seed, folder):
         done = subprocess.run(command, check=False, capture_output=True, encoding="utf-8")
     if done.returncode:
         raise RuntimeError(f"{setup.scenario}: {done.stderr.strip()}")
-    evidence = Evidence(program, folder / "port0.out", folder / "observations.rnx", [folder / "navigation.rnx"], setup,
-                        data)
+    # As the record is solved: with all that was sent that day, not with what the run used of it.
+    navigation = [folder / "navigation.rnx"] if setup.rebase else setup.files(data)
+    evidence = Evidence(program, folder / "port0.out", folder / "observations.rnx", navigation, setup, data)
     evidence.folder = folder
     return evidence

@@ -105,7 +105,7 @@ void read_multipath(TableReader& table, StatisticalMultipath& p) {
                    {"σ of the code that comes to it at the horizon", "7.5; survey 0.95, phone 4"});
     table.quantity("static_time_s", p.static_time, {0, 1e6}, {"correlation time at rest", "15; survey 22, phone 0.3"});
     table.quantity("horizon_time_s", p.horizon_time, {0, 1e6},
-                   {"what comes to it at the horizon, times exp(−elevation/10°)", "400; survey and phone 0"});
+                   {"what comes to it at the horizon, times exp(−elevation/10°)", "250; survey and phone 0"});
     table.quantity("moving_time_s", p.moving_time, {0, 1e6}, "correlation time above 1 m/s");
 }
 

@@ -41,7 +41,7 @@ void make_consumer(ModernSettings& s) {
     s.propagation.link.antenna = AntennaPattern(Decibels(3.4), Decibels(19.5), 1.3);
     s.propagation.link.ripple_at_horizon = Decibels(6);
     s.propagation.link.ripple_time = Seconds(20);
-    set_multipath(s, {Metres(0.64), Metres(7.5), Seconds(15), Seconds(400)});
+    set_multipath(s, {Metres(0.64), Metres(7.5), Seconds(15), Seconds(250)});
     s.navigation.filter.position_memory = Seconds(20);
     s.navigation.weights.floor = Metres(0.42);
     s.navigation.weights.at_zenith = Metres(0.7);
