@@ -2,6 +2,8 @@
 // closed forms of Rice and Clarke, and what satellites and antennas share.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -161,6 +163,78 @@ TEST(StateChannelFading, CrossesLevelsAsRicesFormulaHasIt) {
         EXPECT_NEAR(fades.fade_share / fades.crossings_per_metre / (c.fade_share / c.crossings_per_metre), 1, 0.12);
     }
 }
+
+// P(amplitude < r) of a direct ray of a constant amplitude with scattered rays of so much mean power (Rice 1945).
+double rice_distribution(double r, double direct, double diffuse_power) {
+    const boost::math::non_central_chi_squared square(2, 2 * direct * direct / diffuse_power);
+    return boost::math::cdf(square, 2 * r * r / diffuse_power);
+}
+
+// P(amplitude < r) where the direct ray's decibels are normal (Loo 1985, equation 1).
+double loo_distribution(double r, double mean_db, double deviation_db, double diffuse_db) {
+    constexpr int pieces = 60;
+    constexpr double farthest = 4, step = 2 * farthest / pieces;
+    double sum = 0, weights = 0;
+    for (int i = 0; i <= pieces; ++i) {
+        const double x = -farthest + step * i, weight = std::exp(-x * x / 2);
+        sum +=
+            weight * rice_distribution(r, std::pow(10, (mean_db + deviation_db * x) / 20), std::pow(10, diffuse_db / 10));
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+struct LooCase {
+    const char* name;
+    P681Environment environment;
+    bool bad;
+};
+
+class LooTest : public testing::TestWithParam<LooCase> {};
+
+// Away from changes Σ_A and MP follow M_A as the table has it (P.681-11, equations 20 and 21); then amplitudes at places
+// far from each other lie as often below each quantile of Loo's distribution as its name says.
+TEST_P(LooTest, HoldsWithinAState) {
+    const LooCase& c = GetParam();
+    constexpr double elevation_deg = 45;
+    P681State state{};
+    for (const P681Row& row : p681_rows(c.environment))
+        if (row.elevation_deg == elevation_deg) state = c.bad ? row.bad : row.good;
+    ASSERT_GT(state.shortest_m, 0);
+    ChannelParameters parameters = surrounded_by(c.environment);
+    parameters.averaging = Seconds(0);
+    constexpr std::array quantiles{0.1, 0.25, 0.5, 0.75, 0.9};
+    std::array<double, quantiles.size()> below{};
+    double samples = 0;
+    for (int line = 0; line < 60; ++line) {
+        StateChannel channel(parameters, 500 + static_cast<std::uint64_t>(line));
+        for (double way = 0; way < 6000; way += 60) {
+            const auto sample =
+                channel.at(walked_satellite, sky_direction(6.0 * line, elevation_deg), place_at(way));
+            const double mean = (sample.direct - sample.shadowing).value();
+            const double diffuse = state.diffuse_slope * mean + state.diffuse_db;
+            if (sample.bad != c.bad || std::abs(sample.diffuse.value() - diffuse) > 1e-9) continue;  // on a ramp
+            std::complex<double> sum = std::pow(10, sample.direct.value() / 20);
+            for (const ChannelEcho& echo : sample.echoes)
+                sum += echo.gain;
+            const double deviation = std::max(state.shadowing_slope * mean + state.shadowing_db, 0.0);
+            const double place = loo_distribution(std::abs(sum), mean, deviation, diffuse);
+            for (std::size_t i = 0; i < quantiles.size(); ++i)
+                below[i] += place < quantiles[i] ? 1 : 0;
+            ++samples;
+        }
+    }
+    EXPECT_GT(samples, 500);
+    for (std::size_t i = 0; i < quantiles.size(); ++i)
+        EXPECT_NEAR(below[i] / samples, quantiles[i], 0.04) << samples;
+}
+
+INSTANTIATE_TEST_SUITE_P(States, LooTest,
+                         testing::Values(LooCase{"wooded_good", P681Environment::wooded, false},
+                                         LooCase{"wooded_bad", P681Environment::wooded, true},
+                                         LooCase{"urban_good", P681Environment::urban, false},
+                                         LooCase{"urban_bad", P681Environment::urban, true}),
+                         [](const auto& loo) { return std::string(loo.param.name); });
 
 // Of two antennas d apart the scattered rays correlate as J0(2πd/λ) (Clarke 1968).
 TEST(StateChannelFading, CorrelatesOverTwoAntennasAsBesselsFunction) {
