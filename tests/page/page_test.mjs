@@ -73,6 +73,8 @@ async function everythingIsThere(page) {
     assert.ok((await inked("errors")) > 3, "the errors are drawn");
     await page.waitForFunction(() => Number(document.getElementById("deviation-count").textContent) >= 10);
     assert.ok((await inked("deviation")) > 3, "the deviation is drawn");
+    assert.ok((await inked("states")) > 3, "the states are drawn");
+    assert.match(await page.locator("#states").getAttribute("aria-label"), /^States of \d+ satellites over time$/);
     await noOverflow(page, laptop.width);
 }
 
@@ -96,7 +98,7 @@ async function historyTakesEpochsOnce(page) {
     const times = await page.evaluate(async () => {
         const { History } = await import("/history.js");
         const history = new History();
-        const add = (time, epoch, error) => history.add(time, { truth: {}, fix: { ok: true }, epoch_s: epoch, error });
+        const add = (time, epoch, error) => history.add(time, { truth: {}, fix: { ok: true }, satellites: [], epoch_s: epoch, error });
         const error = { east_m: 1, north_m: 2, up_m: 3 };
         add(0.2, 0, error);
         add(0.4, 0, error);
@@ -106,6 +108,21 @@ async function historyTakesEpochsOnce(page) {
         return [history.positions(0), history.positions(1)].map((list) => list.map((sample) => sample.time));
     });
     assert.deepEqual(times, [[0.2, 2], [2]]);
+}
+
+// A state goes on until another begins, or until nothing is seen of the satellite.
+async function historyJoinsStates(page) {
+    const stretches = await page.evaluate(async () => {
+        const { History } = await import("/history.js");
+        const history = new History();
+        const seen = [[0, "line_of_sight", true], [1, "line_of_sight", true], [2, "shadowed", true], [3, "shadowed", false],
+            [9, "shadowed", false]];
+        for (const [time, state, used] of seen)
+            history.add(time, { truth: {}, fix: { ok: true }, satellites: [{ id: "G01", state, used }] });
+        return history.states.get("G01").map(({ from, to, state, used }) => [from, to, state, used]);
+    });
+    assert.deepEqual(stretches, [[0, 2, "line_of_sight", true], [2, 3, "shadowed", true], [3, 3, "shadowed", false],
+        [9, 9, "shadowed", false]]);
 }
 
 function messageRow(page, name, from) {
@@ -329,6 +346,7 @@ async function test(browser, run) {
     await everythingIsThere(page);
     await deviationIsTold(page);
     await historyTakesEpochsOnce(page);
+    await historyJoinsStates(page);
     await messagesAreCounted(page);
     await dialogueIsFiltered(page);
     await verdictsStand(page);

@@ -2,7 +2,8 @@
 import { colour } from "./appearance.js";
 import { context, once, polyline } from "./canvas.js";
 import { byId } from "./dom.js";
-import { clock, clockStep, roundMetres } from "./format.js";
+import { roundMetres } from "./format.js";
+import { drawTimes, timeWindow } from "./time_axis.js";
 
 const left = 52;
 const right = 10;
@@ -32,10 +33,7 @@ export class ErrorPlot {
         const area = context(this.canvas);
         if (!area || !this.history) return;
         const { pen, width, height } = area;
-        const first = this.history.samples[0]?.time ?? 0;
-        const seen = Math.max(this.now - first, 20);
-        const span = this.span ? Math.min(this.span, seen) : seen;
-        const begin = Math.max(this.now - span, 0);
+        const { begin, span } = timeWindow(this.history, this.span, this.now);
         // One from before the window, so that lines come in from its edge.
         const from = this.history.samples.findIndex((sample) => sample.time >= begin);
         const samples = from < 0 ? [] : this.history.samples.slice(Math.max(from - 1, 0));
@@ -93,14 +91,7 @@ export class ErrorPlot {
             pen.lineTo(width - right, at);
             pen.fillText(roundMetres(value), left - 6, Math.max(at, 8));
         }
-        pen.textAlign = "center";
-        const step = clockStep((span * 80) / (width - left - right));
-        for (let time = Math.max(Math.ceil(begin / step) * step, 0); time <= this.now; time += step) {
-            const at = Math.round(x(time)) + 0.5;
-            pen.moveTo(at, top);
-            pen.lineTo(at, height - bottom);
-            if (at > left + 12 && at < width - 18) pen.fillText(clock(time), at, height - 9);
-        }
         pen.stroke();
+        drawTimes(pen, { x, begin, span, now: this.now, left, right: width - right, top, bottom: height - bottom });
     }
 }

@@ -1,6 +1,8 @@
 // What the page has seen since it was opened: the stream tells of the moment alone.
 
 const mostSamples = 12_000;
+const mostStretches = 2000; // of a satellite
+const longestGap = 2; // s between snapshots of one stretch
 const earthRadius = 6378137; // WGS 84, semi-major axis, m
 const eccentricitySquared = 6.69437999014e-3; // WGS 84
 
@@ -27,16 +29,22 @@ export function unflat(point, origin) {
     };
 }
 
-/** Samples of one receiver, in ascending time. */
+/** Samples of one receiver, in ascending time; of each satellite the stretches {from, to, state, used}. */
 export class History {
     constructor() {
+        this.clear();
+    }
+
+    clear() {
         this.samples = [];
+        this.states = new Map();
     }
 
     add(time, receiver) {
         const last = this.samples.at(-1);
-        if (last && time < last.time) this.samples = []; // the program has begun anew
+        if (last && time < last.time) this.clear(); // the program has begun anew
         if (last && time === last.time) return;
+        for (const satellite of receiver.satellites) this.addState(time, satellite);
         const error = receiver.error;
         this.samples.push({
             time,
@@ -51,6 +59,17 @@ export class History {
             claimed: receiver.fix.h_acc_m ?? null,
         });
         if (this.samples.length > mostSamples) this.thin();
+    }
+
+    addState(time, { id, state, used }) {
+        if (!this.states.has(id)) this.states.set(id, []);
+        const stretches = this.states.get(id);
+        const last = stretches.at(-1);
+        const goesOn = last && time - last.to <= longestGap;
+        if (goesOn) last.to = time;
+        if (goesOn && last.state === state && last.used === used) return;
+        stretches.push({ from: time, to: time, state, used });
+        if (stretches.length > mostStretches) stretches.shift();
     }
 
     /** Samples with a position from a time on, one of each epoch: snapshots may come faster than those. */

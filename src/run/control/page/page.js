@@ -14,6 +14,7 @@ import { setUpMessages } from "./messages.js";
 import { Pace } from "./pace.js";
 import { setUpSkyPlot } from "./sky_plot.js";
 import { fixState, showState } from "./state.js";
+import { StatePlot } from "./states.js";
 import { Timeline } from "./timeline.js";
 import { TrackMap } from "./track.js";
 import { showVerdicts } from "./verdicts.js";
@@ -43,6 +44,7 @@ const parts = {
     events: setUpEvents(),
     track: new TrackMap(moveTo),
     errors: new ErrorPlot(),
+    states: new StatePlot(),
     deviation: new Deviation(),
     messages: setUpMessages(),
     timeline: new Timeline({ stop: (name) => faults.stop(name), start: (name) => faults.start(name) }),
@@ -81,6 +83,7 @@ function showReceiver(status) {
     parts.track.show(receiver, historyOf(receiver.name));
     parts.errors.show(historyOf(receiver.name), status.timeline, status.elapsed_s);
     parts.deviation.show(historyOf(receiver.name), status.elapsed_s);
+    parts.states.show(historyOf(receiver.name), status.elapsed_s);
     parts.messages(status, chosen);
 }
 
@@ -115,6 +118,7 @@ watchScheme(() => {
     parts.track.paint();
     parts.errors.paint();
     parts.deviation.paint();
+    parts.states.paint();
 });
 setUpKeys({
     " ": () => parts.pace.toggle(),

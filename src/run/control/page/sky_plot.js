@@ -17,8 +17,8 @@ function strongest(satellite) {
     return values.length ? Math.max(...values) : NaN;
 }
 
-// How a satellite's signal comes, by its `state`.
-const stateWords = { line_of_sight: "line of sight", shadowed: "shadowed", reflected: "reflected", blocked: "blocked" };
+/** How a satellite's signal comes, by its `state`. */
+export const stateWords = { line_of_sight: "line of sight", shadowed: "shadowed", reflected: "reflected", blocked: "blocked" };
 
 function shape(state, attributes) {
     if (state === "line_of_sight") return draw("circle", { r: size, ...attributes });
