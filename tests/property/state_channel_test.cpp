@@ -177,8 +177,8 @@ double loo_distribution(double r, double mean_db, double deviation_db, double di
     double sum = 0, weights = 0;
     for (int i = 0; i <= pieces; ++i) {
         const double x = -farthest + step * i, weight = std::exp(-x * x / 2);
-        sum +=
-            weight * rice_distribution(r, std::pow(10, (mean_db + deviation_db * x) / 20), std::pow(10, diffuse_db / 10));
+        sum += weight *
+               rice_distribution(r, std::pow(10, (mean_db + deviation_db * x) / 20), std::pow(10, diffuse_db / 10));
         weights += weight;
     }
     return sum / weights;
@@ -192,8 +192,8 @@ struct LooCase {
 
 class LooTest : public testing::TestWithParam<LooCase> {};
 
-// Away from changes Σ_A and MP follow M_A as the table has it (P.681-11, equations 20 and 21); then amplitudes at places
-// far from each other lie as often below each quantile of Loo's distribution as its name says.
+// Away from changes Σ_A and MP follow M_A as the table has it (P.681-11, equations 20 and 21); then amplitudes at
+// places far from each other lie as often below each quantile of Loo's distribution as its name says.
 TEST_P(LooTest, HoldsWithinAState) {
     const LooCase& c = GetParam();
     constexpr double elevation_deg = 45;
@@ -209,8 +209,7 @@ TEST_P(LooTest, HoldsWithinAState) {
     for (int line = 0; line < 60; ++line) {
         StateChannel channel(parameters, 500 + static_cast<std::uint64_t>(line));
         for (double way = 0; way < 6000; way += 60) {
-            const auto sample =
-                channel.at(walked_satellite, sky_direction(6.0 * line, elevation_deg), place_at(way));
+            const auto sample = channel.at(walked_satellite, sky_direction(6.0 * line, elevation_deg), place_at(way));
             const double mean = (sample.direct - sample.shadowing).value();
             const double diffuse = state.diffuse_slope * mean + state.diffuse_db;
             if (sample.bad != c.bad || std::abs(sample.diffuse.value() - diffuse) > 1e-9) continue;  // on a ramp

@@ -191,7 +191,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     if (auto path = read_trajectory_keys(top, {"where the vehicle is", "fixed, in Odessa"}, context, scenario.warnings))
         scenario.trajectory = std::move(*path);
     top.table("model", "how a fix is made", [&](TableReader& t) { read_model_keys(t, scenario.model, folder); });
-    read_surroundings(top, scenario);
+    read_surroundings(top, scenario, folder);
     top.table("atmosphere", "clouds and rain; and the air of the sensor models", [&](TableReader& t) {
         read_atmosphere_keys(t, scenario, folder);
         scenario.atmosphere_keys = t.keys();

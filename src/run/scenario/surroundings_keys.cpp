@@ -1,12 +1,17 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
 #include "detail/scenario_keys.hpp"
 #include "detail/table_reader.hpp"
+#include "world/city/land_use.hpp"
 
 namespace skyloop::inline run {
 namespace {
 
 constexpr double longest_way_m = 1e9, longest_time_s = 1e10;
+constexpr double standard_ramp_m = 20;
 
 void read_channel_numbers(TableReader& table, ChannelParameters& p) {
     table.number("distance_scale", p.distance_scale, {0.01, 100}, "of the environment's lengths of way");
@@ -55,9 +60,9 @@ StretchOfTime read_time(TableReader& table) {
 StretchOfPlace read_place(TableReader& table) {
     const auto corners = table.polygon("inside", "they hold inside this polygon, [[latitude, longitude], …]");
     if (!corners) return {};
-    auto place = stretch_of_place(*corners);
-    if (!place) return table.mistake("inside", place.error()), StretchOfPlace();
-    return std::move(*place);
+    const EarthPolygon polygon(*corners);
+    if (const auto sound = check_polygon(polygon); !sound) table.mistake("inside", sound.error());
+    return {{polygon}};
 }
 
 void read_extent(TableReader& table, SurroundingsStretch& stretch) {
@@ -81,7 +86,7 @@ void read_extent(TableReader& table, SurroundingsStretch& stretch) {
 
 void read_ramp(TableReader& table, SurroundingsStretch& stretch) {
     const bool timed = std::holds_alternative<StretchOfTime>(stretch.extent);
-    double metres = 20, seconds = 2;
+    double metres = standard_ramp_m, seconds = 2;
     table.where(!timed, "without from_s and to_s", [&] {
         table.number("ramp_m", metres, {0, longest_way_m}, "way over which they come and go");
     });
@@ -91,16 +96,84 @@ void read_ramp(TableReader& table, SurroundingsStretch& stretch) {
     stretch.ramp = timed ? seconds : metres;
 }
 
+struct LandUse {
+    std::string_view tag;  // of OpenStreetMap (wiki, "Key:landuse", "Key:natural", "Key:aeroway")
+    Surroundings around;
+};
+
+// Ours. Of an area with several of them the first.
+constexpr LandUse land_uses[] = {{"natural=wood", Surroundings::forest},
+                                 {"landuse=forest", Surroundings::forest},
+                                 {"landuse=residential", Surroundings::residential},
+                                 {"landuse=commercial", Surroundings::urban},
+                                 {"landuse=retail", Surroundings::urban},
+                                 {"landuse=industrial", Surroundings::urban},
+                                 {"landuse=farmland", Surroundings::rural},
+                                 {"landuse=farmyard", Surroundings::rural},
+                                 {"landuse=meadow", Surroundings::rural},
+                                 {"landuse=orchard", Surroundings::rural},
+                                 {"landuse=vineyard", Surroundings::rural},
+                                 {"landuse=allotments", Surroundings::rural},
+                                 {"natural=water", Surroundings::open_sky},
+                                 {"aeroway=aerodrome", Surroundings::open_sky}};
+// Of areas that overlap the later one counts: woods lie in towns, lakes in woods.
+constexpr Surroundings land_use_order[] = {Surroundings::rural, Surroundings::residential, Surroundings::urban,
+                                           Surroundings::forest, Surroundings::open_sky};
+
+Result<std::vector<SurroundingsStretch>> stretches_of_land(const std::filesystem::path& file) {
+    std::vector<std::string_view> tags;
+    for (const LandUse& use : land_uses)
+        tags.push_back(use.tag);
+    const auto areas = read_land_use(file, tags);
+    if (!areas) return fail(areas.error());
+    std::map<Surroundings, StretchOfPlace> places;
+    for (const LandUseArea& area : *areas) {
+        const auto use = std::ranges::find(land_uses, std::string_view(area.use), &LandUse::tag);
+        places[use->around].polygons.emplace_back(area.outer, area.holes);
+    }
+    std::vector<SurroundingsStretch> stretches;
+    for (const Surroundings around : land_use_order)
+        if (const auto place = places.find(around); place != places.end())
+            stretches.push_back({channel_of(around), std::move(place->second)});
+    return stretches;
+}
+
+// Nothing where the table names no file.
+std::optional<std::vector<SurroundingsStretch>> read_land_use_file(TableReader& table, ModernSettings& modern,
+                                                                   const std::filesystem::path& folder) {
+    std::filesystem::path file;
+    table.file_path("land_use", folder, file, "in place of kind and where: areas of an OpenStreetMap file");
+    for (const std::string_view key : {"kind", "from_m", "to_m", "from_s", "to_s", "inside", "ramp_s", "channel"})
+        table.not_both("land_use", key);
+    table.needs_one_of({"kind", "land_use"}, "has neither kind nor land_use; expected what is around the antenna");
+    if (file.empty()) return std::nullopt;
+    modern.tables.push_back(file);
+    double ramp = standard_ramp_m;
+    table.number("ramp_m", ramp, {0, longest_way_m});
+    auto stretches = stretches_of_land(file);
+    if (!stretches) return table.mistake("land_use", stretches.error()), std::vector<SurroundingsStretch>();
+    for (SurroundingsStretch& stretch : *stretches)
+        stretch.ramp = ramp;
+    return std::move(*stretches);
+}
+
 SurroundingsStretch read_stretch(TableReader& table) {
     SurroundingsStretch stretch;
     const auto kind = table.choice("kind", surroundings_names, "what is around the antenna");
-    table.needs_one_of({"kind"}, "has no kind; expected what is around the antenna");
     if (kind) stretch.channel = channel_of(static_cast<Surroundings>(*kind));
     read_extent(table, stretch);
     read_ramp(table, stretch);
     table.table("channel", "numbers of their channel, in place of those of kind",
                 [&](TableReader& t) { read_channel_keys(t, stretch.channel); });
     return stretch;
+}
+
+void read_stretches(TableReader& table, ModernSettings& modern, const std::filesystem::path& folder) {
+    std::vector<SurroundingsStretch>& stretches = modern.propagation.stretches;
+    if (const auto land = read_land_use_file(table, modern, folder))
+        stretches.insert(stretches.end(), land->begin(), land->end());
+    else
+        stretches.push_back(read_stretch(table));
 }
 
 }  // namespace
@@ -125,11 +198,11 @@ void read_channel_keys(TableReader& table, ChannelParameters& p) {
     });
 }
 
-void read_surroundings(TableReader& top, Scenario& scenario) {
+void read_surroundings(TableReader& top, Scenario& scenario, const std::filesystem::path& folder) {
     ModernSettings& modern = scenario.model.modern;
     const std::size_t before = top.idle_keys().size();
     top.tables("surroundings", "surroundings along the way; of those that overlap, the last",
-               [&](TableReader& t) { modern.propagation.stretches.push_back(read_stretch(t)); });
+               [&](TableReader& t) { read_stretches(t, modern, folder); });
     const std::vector<std::string>& idle = top.idle_keys();
     modern.idle_keys.insert(modern.idle_keys.end(), idle.begin() + static_cast<std::ptrdiff_t>(before), idle.end());
     if (scenario.model.sensor_model && !modern.propagation.stretches.empty())

@@ -22,7 +22,7 @@ using NodeList = std::vector<osmium::object_id_type>;
 /// Nodes, ways and areas of a file; places of nodes may follow the ways that name them.
 class OsmReader {
 public:
-    explicit OsmReader(const CityFileSettings& settings) : settings_(settings) {}
+    explicit OsmReader(const OutlineUseOf& use_of) : use_of_(use_of) {}
 
     /// Throws what libosmium throws.
     void read(std::string_view bytes, const std::string& format);
@@ -46,7 +46,7 @@ private:
     void drop_repeating_borders();
     void add_area(const Area& area);
 
-    const CityFileSettings& settings_;
+    const OutlineUseOf& use_of_;
     OsmDeletions deletions_;
     std::unordered_map<osmium::object_id_type, Eigen::Vector2d> places_;
     std::map<osmium::object_id_type, Way> ways_;
@@ -86,7 +86,7 @@ void OsmReader::take(const osmium::Way& way) {
         kept.nodes.push_back(corner_of_way(node));
         if (node.location().valid()) places_[kept.nodes.back()] = {node.location().lon(), node.location().lat()};
     }
-    const OutlineUse use = outline_use(tags_of_object(way.tags()), settings_, UnnamedOutline::nothing);
+    const OutlineUse use = use_of_(tags_of_object(way.tags()));
     if (use.kind != OutlineUse::Kind::none) kept.use = use;
 }
 
@@ -97,7 +97,7 @@ void OsmReader::take(const osmium::Relation& relation) {
     const auto type = tags.find("type");
     if (type == tags.end() || type->second != "multipolygon") return;
     Area area;
-    area.use = outline_use(tags, settings_, UnnamedOutline::nothing);
+    area.use = use_of_(tags);
     if (area.use.kind == OutlineUse::Kind::none) return;
     for (const osmium::RelationMember& one : relation.members())
         if (one.type() == osmium::item_type::way)
@@ -178,6 +178,7 @@ std::vector<std::vector<Eigen::Vector2d>> OsmReader::rings_of(const std::vector<
 bool repeats(const OutlineUse& border, const OutlineUse& area, bool with_courtyards) {
     if (border.kind != area.kind) return false;
     if (area.kind == OutlineUse::Kind::trees) return true;
+    if (area.kind == OutlineUse::Kind::land) return border.land == area.land;
     return with_courtyards && border.base == area.base && border.canopy == area.canopy &&
            (!border.top || !area.top || *border.top == *area.top);
 }
@@ -193,7 +194,7 @@ void OsmReader::drop_repeating_borders() {
             if (!repeats(*border->second.use, area.use, !area.inner.empty())) continue;
             inherit(area.use, *border->second.use);
             border->second.use.reset();
-            if (area.use.kind != OutlineUse::Kind::trees) ++buildings;
+            if (area.use.kind == OutlineUse::Kind::building || area.use.kind == OutlineUse::Kind::part) ++buildings;
         }
     if (buildings > 0)
         found_.warnings.push_back(fmt::format(
@@ -246,8 +247,8 @@ std::string first_line(std::string_view what) {
 
 }  // namespace
 
-Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,
-                           const CityFileSettings& settings) {
+Result<Outlines> read_osm_outlines(std::string_view bytes, std::string_view format, std::string_view name,
+                                   const OutlineUseOf& use_of) {
     if (format != "osm" && format != "osm.pbf" && format != "pbf")
         return fail(ErrorCode::input,
                     fmt::format("{}: unknown format \"{}\", expected osm or osm.pbf", name, shown(format)));
@@ -259,7 +260,7 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
             ErrorCode::input,
             fmt::format("{}: coordinate \"{}\"; expected degrees",
                         line_place(name, bytes, static_cast<std::size_t>(wild->data() - bytes.data())), shown(*wild)));
-    OsmReader reader(settings);
+    OsmReader reader(use_of);
     try {
         reader.read(bytes, std::string(format));
     } catch (const osmium::xml_error& error) {
@@ -270,7 +271,15 @@ Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std:
     } catch (const std::exception& error) {
         return fail(ErrorCode::input, fmt::format("{}: damaged or cut: {}", name, first_line(error.what())));
     }
-    return city_of_outlines(reader.outlines(), format == "osm" ? "osm" : "osm.pbf", name, settings);
+    return reader.outlines();
+}
+
+Result<CityFile> parse_osm(std::string_view bytes, std::string_view format, std::string_view name,
+                           const CityFileSettings& settings) {
+    const auto use_of = [&](const OutlineTags& tags) { return outline_use(tags, settings, UnnamedOutline::nothing); };
+    auto read = read_osm_outlines(bytes, format, name, use_of);
+    if (!read) return fail(read.error());
+    return city_of_outlines(std::move(*read), format == "osm" ? "osm" : "osm.pbf", name, settings);
 }
 
 }  // namespace skyloop::inline world

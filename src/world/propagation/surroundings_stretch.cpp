@@ -17,20 +17,37 @@ using Point = bg::model::d2::point_xy<double>;
 using Polygon = bg::model::polygon<Point>;
 using Line = bg::model::linestring<Point>;
 
-// On the plane that touches the Earth at a place, m east and north.
-Polygon polygon_around(const Geodetic& place, const StretchOfPlace& area) {
+double longitude_from(const Geodetic& origin, const Geodetic& place) {
+    return std::remainder(place.longitude.rad() - origin.longitude.rad(), 2 * std::numbers::pi);
+}
+
+Polygon::ring_type ring_around(const Geodetic& place, const EarthPolygon::Ring& corners) {
     constexpr double radius = 6371000;
+    Polygon::ring_type ring;
+    for (const Geodetic& corner : corners)
+        ring.emplace_back(radius * std::cos(place.latitude.rad()) * longitude_from(place, corner),
+                          radius * (corner.latitude.rad() - place.latitude.rad()));
+    return ring;
+}
+
+// On the plane that touches the Earth at a place, m east and north.
+Polygon polygon_around(const Geodetic& place, const EarthPolygon& area) {
     Polygon polygon;
-    for (const Geodetic& corner : area.corners) {
-        const double east = std::remainder(corner.longitude.rad() - place.longitude.rad(), 2 * std::numbers::pi);
-        const double north = corner.latitude.rad() - place.latitude.rad();
-        bg::append(polygon.outer(), Point(radius * std::cos(place.latitude.rad()) * east, radius * north));
-    }
+    polygon.outer() = ring_around(place, area.outer());
+    for (const EarthPolygon::Ring& hole : area.holes())
+        polygon.inners().push_back(ring_around(place, hole));
     bg::correct(polygon);
     return polygon;
 }
 
-Line edges_of(const Polygon& polygon) { return {polygon.outer().begin(), polygon.outer().end()}; }
+Line line_of(const Polygon::ring_type& ring) { return {ring.begin(), ring.end()}; }
+
+bg::model::multi_linestring<Line> edges_of(const Polygon& polygon) {
+    bg::model::multi_linestring<Line> edges{line_of(polygon.outer())};
+    for (const auto& hole : polygon.inners())
+        edges.push_back(line_of(hole));
+    return edges;
+}
 
 double weight_of(double since, double left, double ramp) {
     const double nearer = std::min(since, left);
@@ -41,7 +58,7 @@ double weight_of(double since, double left, double ramp) {
 // From the origin straight on until the polygon ends; where there is no heading, to its nearest edge.
 double way_to_edge(const Polygon& polygon, std::optional<Angle> heading) {
     const Point here(0, 0);
-    const Line edges = edges_of(polygon);
+    const auto edges = edges_of(polygon);
     const double nearest = bg::distance(here, edges);
     if (!heading) return nearest;
     constexpr double farther_than_any = 1e6;
@@ -74,6 +91,15 @@ struct PlaceFinder {
         return place;
     }
     StretchPlace operator()(const StretchOfPlace& area) const {
+        StretchPlace place;
+        for (const EarthPolygon& polygon : area.polygons)
+            if (polygon.may_hold(antenna.place))
+                if (const StretchPlace one = within(polygon); one.inside && one.weight >= place.weight) place = one;
+        return place;
+    }
+
+private:
+    [[nodiscard]] StretchPlace within(const EarthPolygon& area) const {
         const Polygon polygon = polygon_around(antenna.place, area);
         const Point here(0, 0);
         if (!bg::covered_by(here, polygon)) return {};
@@ -85,22 +111,40 @@ struct PlaceFinder {
 
 }  // namespace
 
+EarthPolygon::EarthPolygon(Ring outer, std::vector<Ring> holes) : outer_(std::move(outer)), holes_(std::move(holes)) {
+    if (outer_.empty()) return;
+    south_ = north_ = outer_.front().latitude;
+    for (const Geodetic& corner : outer_) {
+        const Angle longitude = Angle::radians(longitude_from(outer_.front(), corner));
+        south_ = std::min(south_, corner.latitude);
+        north_ = std::max(north_, corner.latitude);
+        west_ = std::min(west_, longitude);
+        east_ = std::max(east_, longitude);
+    }
+}
+
+bool EarthPolygon::may_hold(const Geodetic& place) const {
+    if (outer_.empty() || place.latitude < south_ || place.latitude > north_) return false;
+    const Angle longitude = Angle::radians(longitude_from(outer_.front(), place));
+    return longitude >= west_ && longitude <= east_;
+}
+
 StretchPlace place_in(const SurroundingsStretch& stretch, const Whereabouts& antenna) {
     return std::visit(PlaceFinder{antenna, stretch.ramp}, stretch.extent);
 }
 
-Result<StretchOfPlace> stretch_of_place(const std::vector<Geodetic>& corners) {
+Result<void> check_polygon(const EarthPolygon& area) {
+    const EarthPolygon::Ring& corners = area.outer();
     if (corners.size() < 3)
         return fail(ErrorCode::input, fmt::format("has {} corners; expected at least three", corners.size()));
-    StretchOfPlace place{corners};
-    const Polygon polygon = polygon_around(corners.front(), place);
+    const Polygon polygon = polygon_around(corners.front(), area);
     Polygon around;
     bg::convex_hull(polygon, around);
     if (!(std::abs(bg::area(around)) > 0))
         return fail(ErrorCode::input, "has no area; expected corners of a polygon, around it");
-    if (!bg::is_simple(edges_of(polygon)))
+    if (!bg::is_simple(line_of(polygon.outer())))
         return fail(ErrorCode::input, "has edges that cross; expected the corners in their order around the polygon");
-    return place;
+    return {};
 }
 
 }  // namespace skyloop::inline world

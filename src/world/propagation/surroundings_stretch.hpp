@@ -23,8 +23,24 @@ struct StretchOfTime {
 };
 
 /// A polygon on the Earth, smaller than a country; heights do not matter.
+class EarthPolygon {
+public:
+    using Ring = std::vector<Geodetic>;  ///< corners; the last is joined to the first
+    explicit EarthPolygon(Ring outer, std::vector<Ring> holes = {});
+    [[nodiscard]] const Ring& outer() const { return outer_; }
+    [[nodiscard]] const std::vector<Ring>& holes() const { return holes_; }
+    /// Whether a place may be inside, by the box around the polygon.
+    [[nodiscard]] bool may_hold(const Geodetic& place) const;
+
+private:
+    Ring outer_;
+    std::vector<Ring> holes_;
+    Angle south_, north_, east_, west_;  ///< longitudes from the first corner's
+};
+
+/// Inside one of some polygons.
 struct StretchOfPlace {
-    std::vector<Geodetic> corners;  ///< the last is joined to the first
+    std::vector<EarthPolygon> polygons;
 };
 
 /// Where its surroundings hold. They come over a ramp behind its beginning and go over one before its end.
@@ -51,8 +67,8 @@ struct StretchPlace {
 };
 StretchPlace place_in(const SurroundingsStretch& stretch, const Whereabouts& antenna);
 
-/// A polygon from latitudes and longitudes. Fails (`input`) with fewer than three corners, without an area, and when
-/// its edges cross: "has …; expected …".
-Result<StretchOfPlace> stretch_of_place(const std::vector<Geodetic>& corners);
+/// Fails (`input`) when the outer ring has fewer than three corners, has no area, or crosses itself: "has …; expected
+/// …".
+Result<void> check_polygon(const EarthPolygon& polygon);
 
 }  // namespace skyloop::inline world

@@ -55,9 +55,9 @@ std::vector<Geodetic> square_at_the_date_line() {
 }
 
 TEST(SurroundingsStretch, HoldsInsideAPolygon) {
-    const auto place = stretch_of_place(square_at_the_date_line());
-    ASSERT_TRUE(place) << place.error().message;
-    const auto stretch = stretch_of(*place, 100);
+    const EarthPolygon square(square_at_the_date_line());
+    ASSERT_TRUE(check_polygon(square));
+    const auto stretch = stretch_of(StretchOfPlace{{square}}, 100);
     Whereabouts antenna;
     antenna.heading = Angle::degrees(90);
     antenna.place = Geodetic::degrees(0, -179.996, 0);  // 111 m from the eastern edge
@@ -72,13 +72,37 @@ TEST(SurroundingsStretch, HoldsInsideAPolygon) {
     EXPECT_FALSE(place_in(stretch, antenna).inside);
 }
 
+TEST(SurroundingsStretch, HoldsInsideOneOfSeveralPolygonsButNotInTheirHoles) {
+    // A hole of a thousandth of a degree to each side in the middle of the square, and another square 2 km to the
+    // north.
+    std::vector<Geodetic> hole, northern = square_at_the_date_line();
+    for (const auto& [latitude, longitude] :
+         {std::pair{-0.001, 179.999}, {0.001, 179.999}, {0.001, -179.999}, {-0.001, -179.999}})
+        hole.push_back(Geodetic::degrees(latitude, longitude, 0));
+    for (Geodetic& corner : northern)
+        corner.latitude = corner.latitude + Angle::degrees(0.02);
+    const EarthPolygon square(square_at_the_date_line(), {hole});
+    const auto stretch = stretch_of(StretchOfPlace{{square, EarthPolygon(northern)}}, 100);
+    Whereabouts antenna;
+    antenna.heading = Angle::degrees(270);
+    const auto at = [&](double latitude, double longitude) {
+        antenna.place = Geodetic::degrees(latitude, longitude, 0);
+        return place_in(stretch, antenna);
+    };
+    EXPECT_FALSE(at(0, 180).inside);
+    EXPECT_NEAR(at(0, -179.9985).weight, 0.556, 0.005);  // 55.6 m from the hole
+    EXPECT_NEAR(at(0, -179.9985).left, 55.6, 0.1);
+    EXPECT_TRUE(at(0.02, 180).inside);
+    EXPECT_FALSE(at(0.01, 180).inside);
+}
+
 TEST(SurroundingsStretch, RefusesPolygonsThatAreNone) {
     auto corners = square_at_the_date_line();
     std::swap(corners[1], corners[2]);
-    const auto crossed = stretch_of_place(corners);
+    const auto crossed = check_polygon(EarthPolygon(corners));
     ASSERT_FALSE(crossed);
     EXPECT_EQ(crossed.error().message, "has edges that cross; expected the corners in their order around the polygon");
-    const auto flat = stretch_of_place({corners[0], corners[1], corners[0]});
+    const auto flat = check_polygon(EarthPolygon({corners[0], corners[1], corners[0]}));
     ASSERT_FALSE(flat);
     EXPECT_EQ(flat.error().message, "has no area; expected corners of a polygon, around it");
 }

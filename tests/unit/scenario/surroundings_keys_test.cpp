@@ -2,7 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "scenario_text.hpp"
+#include "world/propagation/surroundings.hpp"
 
 namespace skyloop {
 namespace {
@@ -92,8 +96,33 @@ TEST(SurroundingsKeys, OverTimeAndToTheEnd) {
 TEST(SurroundingsKeys, InsideAPolygon) {
     const ModernSettings read =
         modern_with("[[surroundings]]\nkind = \"urban\"\ninside = [[48.1, 11.5], [48.2, 11.5], [48.2, 11.7]]");
-    EXPECT_EQ(std::get<StretchOfPlace>(only_stretch(read).extent).corners.size(), 3u);
+    EXPECT_EQ(std::get<StretchOfPlace>(only_stretch(read).extent).polygons.front().outer().size(), 3u);
     EXPECT_EQ(only_stretch(read).ramp, 20);
+}
+
+// A wood around a lake beside houses: a stretch for each word, woods before lakes.
+TEST(SurroundingsKeys, ByTheUseOfLand) {
+    const std::string path = testing::TempDir() + "land_use.osm";
+    std::ofstream(path) << R"(<osm version="0.6">
+<node id="1" lat="50" lon="10"/><node id="2" lat="50" lon="10.001"/><node id="3" lat="50.001" lon="10.001"/>
+<node id="4" lat="50.001" lon="10"/><node id="5" lat="50.0002" lon="10.0002"/><node id="6" lat="50.0002" lon="10.0007"/>
+<node id="7" lat="50.0007" lon="10.0007"/><node id="8" lat="50.0007" lon="10.0002"/><node id="9" lat="50.002" lon="10"/>
+<way id="1"><nd ref="5"/><nd ref="6"/><nd ref="7"/><nd ref="8"/><nd ref="5"/><tag k="natural" v="water"/></way>
+<way id="2"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/><tag k="landuse" v="forest"/></way>
+<way id="3"><nd ref="4"/><nd ref="3"/><nd ref="9"/><nd ref="4"/><tag k="landuse" v="residential"/></way></osm>)";
+    const ModernSettings read = modern_with("[[surroundings]]\nland_use = \"" + path + "\"\nramp_m = 7");
+    ASSERT_EQ(read.tables, std::vector<std::filesystem::path>{path});
+    const auto& stretches = read.propagation.stretches;
+    ASSERT_EQ(stretches.size(), 3u);
+    EXPECT_EQ(stretches[0].channel.environment, channel_of(Surroundings::residential).environment);
+    EXPECT_EQ(stretches[1].channel.environment, P681Environment::wooded);
+    EXPECT_FALSE(stretches[2].channel.environment);
+    EXPECT_EQ(stretches[2].ramp, 7);
+    const auto& lake = std::get<StretchOfPlace>(stretches[2].extent).polygons;
+    ASSERT_EQ(lake.size(), 1u);
+    ASSERT_EQ(lake[0].outer().size(), 4u);
+    EXPECT_NEAR(lake[0].outer()[1].longitude.deg(), 10.0007, 1e-9);
+    EXPECT_NEAR(lake[0].outer()[2].latitude.deg(), 50.0007, 1e-9);
 }
 
 TEST(SurroundingsKeys, SayWhatIsWrong) {
@@ -102,7 +131,13 @@ TEST(SurroundingsKeys, SayWhatIsWrong) {
                 HasSubstr("test.toml:2:8: surroundings.kind: is 'forrest'; expected one of "
                           "open-sky rural"));
     EXPECT_THAT(wrong("kind = \"forrest\"\nto_m = 5"), HasSubstr("'forest'"));
-    EXPECT_THAT(wrong("to_m = 5"), HasSubstr("has no kind; expected what is around the antenna"));
+    EXPECT_THAT(wrong("to_m = 5"), HasSubstr("has neither kind nor land_use; expected what is around the antenna"));
+    EXPECT_THAT(
+        wrong("land_use = \"town.geojson\""),
+        HasSubstr("test.toml:2:12: surroundings.land_use: town.geojson: is no file of OpenStreetMap by its name"));
+    EXPECT_THAT(wrong("land_use = \"missing.osm\""), HasSubstr("missing.osm"));
+    EXPECT_EQ(wrong("kind = \"urban\"\nland_use = \"missing.osm\"\nto_m = 5"),
+              "test.toml:2:8: surroundings.kind: stands beside land_use; expected one of the two");
     EXPECT_THAT(wrong("kind = \"urban\""), HasSubstr("has neither from_m, to_m, from_s, to_s nor inside"));
     EXPECT_THAT(wrong("kind = \"urban\"\nfrom_m = 9\nto_m = 5"),
                 HasSubstr("test.toml:4:8: surroundings.to_m: is 5; expected more than 9, where they begin"));

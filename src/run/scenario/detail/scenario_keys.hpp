@@ -31,7 +31,7 @@ void read_modern_propagation_keys(TableReader& modern, ModernSettings& settings,
 /// [model.modern.channel], and the same of [[surroundings]].
 void read_channel_keys(TableReader& table, ChannelParameters& p);
 /// Of [[surroundings]]: ModernPropagationParameters::stretches.
-void read_surroundings(TableReader& top, Scenario& scenario);
+void read_surroundings(TableReader& top, Scenario& scenario, const std::filesystem::path& folder);
 void read_model_keys(TableReader& model, ModelSettings& settings, const std::filesystem::path& folder);
 /// Of [atmosphere]: Scenario::atmosphere and tec_maps.
 void read_atmosphere_keys(TableReader& atmosphere, Scenario& scenario, const std::filesystem::path& folder);

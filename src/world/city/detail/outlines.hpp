@@ -1,6 +1,7 @@
 /// What GeoJSON and OpenStreetMap have in common: outlines with tags.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,11 +18,12 @@ using OutlineTags = std::map<std::string, std::string, std::less<>>;
 
 /// What stands on an outline. Keys as in OpenStreetMap's "Simple 3D Buildings" and the names that other makers use.
 struct OutlineUse {
-    enum class Kind { none, building, part, trees } kind = Kind::none;
+    enum class Kind { none, building, part, trees, land } kind = Kind::none;
     std::optional<double> top;  ///< m above the ground; absent where no tag tells it
     double base = 0;            ///< m above the ground
     bool canopy = false;        ///< a roof without walls
     std::string material;       ///< empty where no tag tells it
+    std::string land;           ///< how land is used, as "landuse=meadow"
 };
 /// What an outline is whose tags name neither a building nor a wood.
 enum class UnnamedOutline {
@@ -52,6 +54,13 @@ struct Outlines {
     std::size_t dropped = 0;  ///< outlines without area or with wrong or missing corners
     std::vector<std::string> warnings;
 };
+
+/// What an outline of OpenStreetMap is, by its tags.
+using OutlineUseOf = std::function<OutlineUse(const OutlineTags&)>;
+
+/// The outlines of a file of OpenStreetMap that are something: degrees. Fails as parse_osm().
+Result<Outlines> read_osm_outlines(std::string_view bytes, std::string_view format, std::string_view name,
+                                   const OutlineUseOf& use_of);
 
 void turn_longitudes(Footprint& footprint, LongitudeTurn& turn);
 
