@@ -74,7 +74,7 @@ void read_extent(TableReader& table, SurroundingsStretch& stretch) {
             table.not_both(key, other);
     for (const std::string_view key : {"from_s", "to_s"})
         table.not_both(key, "inside");
-    table.needs_one_of({"from_m", "to_m", "from_s", "to_s", "inside"},
+    table.needs_one_of({"land_use", "from_m", "to_m", "from_s", "to_s", "inside"},
                        "has neither from_m, to_m, from_s, to_s nor inside; expected where or when they hold");
     if (table.has("inside"))
         stretch.extent = std::move(place);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/core/files.hpp"
 #include "base/core/words.hpp"
 #include "detail/companion_files.hpp"
@@ -50,6 +52,10 @@ Result<std::vector<LandUseArea>> read_land_use(const std::filesystem::path& path
         for (const auto& hole : outline.footprint.holes)
             areas.back().holes.push_back(corners_of(hole));
     }
+    if (areas.empty() && read->dropped > 0)
+        return fail(ErrorCode::input,
+                    fmt::format("{}: of its {} areas of a known use none has all its corners in the file",
+                                path.string(), read->dropped));
     if (areas.empty())
         return fail(ErrorCode::input, fmt::format("{}: has no area of a known use; expected one, as {}", path.string(),
                                                   fmt::join(uses.first(std::min<std::size_t>(uses.size(), 3)), ", ")));

@@ -52,6 +52,10 @@ TEST(LandUse, SaysWhatIsWrong) {
     ASSERT_FALSE(none);
     EXPECT_THAT(none.error().message,
                 HasSubstr("town.osm: has no area of a known use; expected one, as natural=wood, landuse=forest"));
+    const auto cut = land_use_of(R"(<way id="3"><nd ref="1"/><nd ref="77"/><nd ref="3"/><nd ref="1"/>
+<tag k="landuse" v="forest"/></way>)");
+    ASSERT_FALSE(cut);
+    EXPECT_THAT(cut.error().message, HasSubstr("of its 1 areas of a known use none has all its corners in the file"));
     const auto damaged = land_use_of("<way>", "damaged.osm");
     ASSERT_FALSE(damaged);
     EXPECT_THAT(damaged.error().message, HasSubstr("damaged.osm:"));
