@@ -14,6 +14,8 @@
 #include "bench/thread_time.hpp"
 #include "support/random_sky.hpp"
 #include "world/city/city_file.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/propagation/wall_scattering.hpp"
 #include "world/scene/generated_city.hpp"
 
 namespace {
@@ -384,6 +386,7 @@ void drive(benchmark::State& state, const BenchCity& city, double hz) {
             settings.rays = default_rays(hz);
             settings.threads = threads;
             PathFinder finder(city.scene, settings);
+            WallScattering scattering(*city.scene, {});
             std::vector<double> spent;
             double paths = 0;
             for (int epoch = 0; epoch < seconds * hz; ++epoch) {
@@ -393,6 +396,9 @@ void drive(benchmark::State& state, const BenchCity& city, double hz) {
                 observer.position = way.from + epoch / hz * way.velocity;
                 const double begin = thread_seconds();
                 const auto found = finder.epoch(observer, sky);
+                scattering.look_around(observer);
+                for (const SceneSatellite& satellite : sky)
+                    benchmark::DoNotOptimize(scattering.of(satellite, Hertz(carrier_frequency_l1)));
                 if (epoch > 0) spent.push_back(thread_seconds() - begin);
                 for (const SatellitePaths& satellite : found)
                     paths += static_cast<double>(satellite.paths.size());
