@@ -59,8 +59,10 @@ bool is_in(const std::vector<std::string>& names, const std::string& name) {
 // Texts that a key needs beside it: one of each set of alternatives, if the key is none of them and may stand with it.
 std::string company_of(const KeyTable& table, const KeyEntry& key) {
     std::string text;
+    std::vector<std::string> there{key.name};
     for (const KeyRule& rule : table.one_of) {
-        if (!rule.kinds.empty() || is_in(rule.keys, key.name)) continue;
+        const bool met = std::ranges::any_of(rule.keys, [&](const std::string& one) { return is_in(there, one); });
+        if (!rule.kinds.empty() || met) continue;
         for (const std::string& other : rule.keys) {
             const bool apart = std::any_of(table.not_both.begin(), table.not_both.end(), [&](const KeyRule& both) {
                 return is_in(both.keys, key.name) && is_in(both.keys, other);
@@ -68,6 +70,7 @@ std::string company_of(const KeyTable& table, const KeyEntry& key) {
             const KeyType type = key_of(table.path, other).type;
             if (apart || (type != KeyType::text && type != KeyType::text_or_texts)) continue;
             text += other + " = \"x\"\n";
+            there.push_back(other);
             break;
         }
     }
