@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "detail/scenario_keys.hpp"
@@ -143,10 +144,13 @@ std::optional<std::vector<SurroundingsStretch>> read_land_use_file(TableReader& 
                                                                    const std::filesystem::path& folder) {
     std::filesystem::path file;
     table.file_path("land_use", folder, file, "in place of kind and where: areas of an OpenStreetMap file");
-    for (const std::string_view key : {"kind", "from_m", "to_m", "from_s", "to_s", "inside", "ramp_s", "channel"})
+    constexpr std::array refused{"kind", "from_m", "to_m", "from_s", "to_s", "inside", "ramp_s", "channel"};
+    for (const std::string_view key : refused)
         table.not_both("land_use", key);
     table.needs_one_of({"kind", "land_use"}, "has neither kind nor land_use; expected what is around the antenna");
     if (file.empty()) return std::nullopt;
+    for (const std::string_view key : refused)
+        table.has_been_read(key);
     modern.tables.push_back(file);
     double ramp = standard_ramp_m;
     table.number("ramp_m", ramp, {0, longest_way_m});

@@ -137,7 +137,9 @@ TEST(SurroundingsKeys, SayWhatIsWrong) {
         HasSubstr("test.toml:2:12: surroundings.land_use: town.geojson: is no file of OpenStreetMap by its name"));
     EXPECT_THAT(wrong("land_use = \"missing.osm\""), HasSubstr("missing.osm"));
     EXPECT_EQ(wrong("kind = \"urban\"\nland_use = \"missing.osm\"\nto_m = 5"),
-              "test.toml:2:8: surroundings.kind: stands beside land_use; expected one of the two");
+              "test.toml:2:8: surroundings.kind: stands beside land_use; expected one of the two\n"
+              "test.toml:3:12: surroundings.land_use: missing.osm: No such file or directory\n"
+              "test.toml:4:8: surroundings.to_m: stands beside land_use; expected one of the two");
     EXPECT_THAT(wrong("kind = \"urban\""), HasSubstr("has neither from_m, to_m, from_s, to_s nor inside"));
     EXPECT_THAT(wrong("kind = \"urban\"\nfrom_m = 9\nto_m = 5"),
                 HasSubstr("test.toml:4:8: surroundings.to_m: is 5; expected more than 9, where they begin"));
