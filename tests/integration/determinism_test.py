@@ -1,4 +1,5 @@
 """The same scenario and seed give the same files; another seed gives others."""
+import csv
 import hashlib
 import pathlib
 import unittest
@@ -57,6 +58,43 @@ class DeterminismTest(unittest.TestCase):
             self.skipTest(f"shared data absent: {navigation}")
         self.check("--nav", navigation, "--start", "2010-07-01T12:00:00Z", "--at", "46.4775,30.7326,77", "--model",
                    "baseline")
+
+    def test_two_runs_under_one_sky(self):
+        """What the sky does hardly differs over 1.1 km; what receivers add is their own."""
+        with open_folder() as folder:
+            base, rover = (self.satellites(pathlib.Path(folder, name), *words) for name, words in (
+                ("base", ("--set", "run.receiver_seed=1", "--at", "48.137,11.575,560")),
+                ("rover", ("--set", "run.receiver_seed=2", "--at", "48.147,11.575,560"))))
+            stranger = self.satellites(pathlib.Path(folder, "stranger"), "--set", "run.sky_seed=8", "--at", "48.137,11.575,560")
+        self.assertGreater(len(base), 500)
+        self.assertEqual(set(base), set(rover))
+        for key, row in base.items():
+            there = rover[key]
+            # But for a hundredth of a degree of elevation.
+            for column in ("orbit_clock_error_m", "iono_delay_m", "tropo_delay_m"):
+                value = float(row[column])
+                self.assertAlmostEqual(value, float(there[column]), delta=1e-3 + 0.005 * abs(value), msg=(key, column))
+        self.assertFalse(any(self.same(base, rover, name) for name in ("multipath_m", "code_noise_m", "phase_noise_m")))
+        self.assertFalse(any(self.same(base, stranger, name) for name in ("orbit_clock_error_m", "tropo_delay_m")))
+
+    def test_receivers_at_one_place_under_one_sky(self):
+        with open_folder() as folder:
+            one, other = (self.satellites(pathlib.Path(folder, f"of{seed}"), "--set", f"run.receiver_seed={seed}")
+                          for seed in (1, 2))
+        for key, row in one.items():
+            for column in ("range_m", "orbit_clock_error_m", "iono_delay_m", "tropo_delay_m"):
+                self.assertEqual(row[column], other[key][column], (key, column))
+
+    @staticmethod
+    def same(one, other, column):
+        return [row[column] for row in one.values()] == [row[column] for row in other.values()]
+
+    def satellites(self, folder, *words):
+        """{(time, satellite): row} of satellites.csv."""
+        skyloop("simulate", "--out", folder, "--duration", 60, "--start", "2026-03-01T12:00:00Z", "--set", "run.sky_seed=7",
+                *words)
+        with open(folder / "satellites.csv", encoding="ascii") as file:
+            return {(row["time_utc"], row["satellite"]): row for row in csv.DictReader(file)}
 
     def test_a_receiver_that_measures(self):
         self.check("--start", "2026-03-01T00:00:00Z", files=FILES + MEASURED)

@@ -29,7 +29,7 @@ ErrorModelSettings error_model_settings(const Scenario& scenario, const Simulati
     ErrorModelSettings settings;
     settings.kind = *model.sensor_model;
     settings.sensor = {{scenario.sky.elevation_mask.value_or(SelectionParameters().elevation_mask)},
-                       receiver_seed(scenario.run.seed, setup.receiver),
+                       receiver_seed(scenario.run, setup.receiver),
                        setup.geoid,
                        LeapSeconds::announced(),
                        setup.geoid_step_deg};
@@ -306,10 +306,10 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
 }
 
 Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSetup& setup) {
-    auto effects =
-        scenario.model.sensor_model
-            ? sensor_effects_of(scenario, setup)
-            : modern_effects_of(scenario, *setup.navigation, {setup.geoid, setup.start, setup.data, setup.gas_losses});
+    auto effects = scenario.model.sensor_model
+                       ? sensor_effects_of(scenario, setup)
+                       : modern_effects_of(scenario, *setup.navigation,
+                                           {setup.geoid, setup.start, setup.data, setup.gas_losses, setup.receiver});
     if (!effects) return fail(effects.error());
     auto path = make_antenna_path(scenario, setup);
     const auto last_place = place_before_start(scenario, setup.receiver, path->at(setup.start));

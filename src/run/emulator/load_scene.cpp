@@ -281,7 +281,7 @@ RayTracedSceneSettings scene_effect_settings(const Scenario& scenario, double ep
     settings.diffraction = entry.diffraction;
     if (!modern) return settings;
     settings.scattering.coefficient = entry.scattering;
-    settings.scattering.seed = scenario.run.seed;
+    settings.scattering.seed = scenario.run.seed_of_sky();
     const ModernPropagationParameters& propagation = scenario.model.modern.propagation;
     settings.crowns = {propagation.loss_model.canopy_db_per_m, propagation.loss_model.most_foliage,
                        entry.foliage ? propagation.foliage.factor() : 0};

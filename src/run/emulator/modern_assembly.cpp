@@ -82,7 +82,8 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     context.maps = std::move(*maps);
     context.nequick_folder = nequick_folder(world.data);
     context.geoid = world.geoid;
-    context.seed = scenario.run.seed;
+    context.sky_seed = scenario.run.seed_of_sky();
+    context.receiver_seed = receiver_seed(scenario.run, world.receiver);
     context.gas_losses = world.gas_losses;
     return modern_effects(settings.propagation, context);
 }
@@ -97,7 +98,7 @@ MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationS
     NavigationKnowledge knowledge{setup.navigation.get(), setup.geoid, LeapSeconds::announced()};
     knowledge.geoid_step_deg = setup.geoid_step_deg;
     if (last_place) knowledge.last_place = to_ecef(*last_place);
-    return {MeasurementEngine(settings.measurement, receiver_seed(scenario.run.seed, setup.receiver)),
+    return {MeasurementEngine(settings.measurement, receiver_seed(scenario.run, setup.receiver)),
             NavigationEngine(settings.navigation, knowledge)};
 }
 

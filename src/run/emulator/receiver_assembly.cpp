@@ -251,7 +251,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     if (!named) return fail(named.error());
     auto& [board, wires, state] = *named;
     const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, board, index),
-                                            receiver_seed(scenario.run.seed, index), entry.power_up};
+                                            receiver_seed(scenario.run, index), entry.power_up};
     warn_of_missing_usb(wires, board, entry, warnings);
     warn_of_untracked(scenario, board, options.settings, warnings);
     if (const auto checked = check_options(board, options, entry); !checked) return fail(checked.error());
@@ -267,7 +267,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     remember_place(shared, index, *simulation, receiver);
     Station::Parts parts{std::move(*simulation), std::move(receiver), {}, {}};
     parts.name = receiver_name(scenario, index);
-    parts.seed = receiver_seed(scenario.run.seed, index);
+    parts.seed = receiver_seed(scenario.run, index);
     parts.state = std::move(state);
     parts.base = entry.base;
     if (shared.mode.repeat) {
@@ -275,13 +275,14 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
         if (!heard) return fail(heard.error());
         parts.repeated = std::move(*heard);
     }
-    if (entry.base) parts.moving_base.emplace(receiver_seed(scenario.run.seed, index));
+    if (entry.base) parts.moving_base.emplace(receiver_seed(scenario.run, index));
     return PlannedStation{std::move(parts), std::move(wires)};
 }
 
 }  // namespace
 
-std::uint64_t receiver_seed(std::uint64_t seed, std::size_t index) {
+std::uint64_t receiver_seed(const RunSettings& run, std::size_t index) {
+    const std::uint64_t seed = run.seed_of_receivers();
     return index == 0 ? seed : fnv1a_64(fmt::format("seed {} receiver {}", seed, index));
 }
 

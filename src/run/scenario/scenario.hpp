@@ -76,7 +76,10 @@ struct RunSettings {
     bool start_now = false;
     std::optional<Seconds> duration;  ///< nothing: until stopped
     std::uint64_t seed = 1;
-    double speed = 1;  ///< simulated seconds per second
+    std::optional<std::uint64_t> sky_seed, receiver_seed;  ///< nothing: `seed`
+    double speed = 1;                                      ///< simulated seconds per second
+    [[nodiscard]] std::uint64_t seed_of_sky() const { return sky_seed.value_or(seed); }
+    [[nodiscard]] std::uint64_t seed_of_receivers() const { return receiver_seed.value_or(seed); }
 };
 
 struct SkySettings {

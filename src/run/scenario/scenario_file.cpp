@@ -124,6 +124,10 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
                  {"length of the run", "until stopped"});
     run.integer("seed", settings.seed, NumberRange::not_negative(),
                 "the same scenario, seed and inputs give the same bytes");
+    run.integer("sky_seed", settings.sky_seed, NumberRange::not_negative(),
+                {"of orbits, clocks, air and surroundings: the same for runs under one sky", "seed"});
+    run.integer("receiver_seed", settings.receiver_seed, NumberRange::not_negative(),
+                {"of the receivers' clocks, noise and multipath", "seed"});
     run.number("speed", settings.speed, {1e-3, 1e6}, "`skyloop run` only: simulated seconds per second");
 }
 

@@ -38,8 +38,8 @@ Result<void> check_state(const Station::Parts& parts, const SharedParts& shared,
 /// Claims the folder of its recording: the first receiver's is the folder itself, the others' are receiver1 and so on.
 Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index);
 
-/// The seed of a receiver's own random numbers. The first has that of the run; the world has it too.
-std::uint64_t receiver_seed(std::uint64_t seed, std::size_t index);
+/// The seed of a receiver's own random numbers. The first has that of all.
+std::uint64_t receiver_seed(const RunSettings& run, std::size_t index);
 
 /// An error of one receiver of several names it.
 Error of_receiver(Error error, const Scenario& scenario, std::size_t index);
