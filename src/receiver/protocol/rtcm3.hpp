@@ -1,5 +1,5 @@
 /// RTCM 3 messages: corrections of a base station (RTCM 10403.3).
-/// Observations as RTCM 3 multiple signal messages of kind 4 and 7 (RTCM 10403.3, 3.5.16).
+/// Observations as RTCM 3 multiple signal messages of kinds 4 to 7 (RTCM 10403.3, 3.5.16).
 #pragma once
 
 #include <array>
@@ -85,7 +85,7 @@ struct Rtcm3MsmCell {
 
 /// All that one message of a system tells.
 struct Rtcm3MsmObservations {
-    int number = 1077;                ///< of kind 4 or 7
+    int number = 1077;                ///< of kind 4 to 7
     int station = 0;                  ///< DF003
     std::uint32_t epoch = 0;          ///< as Rtcm3MsmHeader::epoch
     bool more = false;                ///< more messages of the same epoch follow
@@ -96,5 +96,8 @@ struct Rtcm3MsmObservations {
 /// nearer, which only moves their unknown number of cycles. Satellites that would make more than 64 cells are left out,
 /// those of the highest numbers first. Empty for other kinds and for no cells at all.
 Bytes encode(const Rtcm3MsmObservations& observations);
+/// Cells whose pseudorange is said to be none are left out; wavelengths are not told. Lock times are the least that the
+/// indicators allow. Nothing for other kinds and cut messages.
+std::optional<Rtcm3MsmObservations> decode_msm(const Rtcm3Message& message);
 
 }  // namespace skyloop::inline receiver

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "base/core/bytes.hpp"
@@ -9,6 +10,25 @@
 
 namespace skyloop::inline receiver {
 namespace {
+
+DecodedValue rounded(double value) {
+    constexpr double per_metre = 1e4;
+    return {std::round(value * per_metre) / per_metre};
+}
+DecodedValue rounded(std::optional<double> value) { return value ? rounded(*value) : DecodedValue(); }
+
+DecodedValue cell_value(const Rtcm3MsmCell& cell) {
+    std::vector<DecodedField> fields;
+    fields.push_back({"satellite", {std::uint64_t(cell.satellite)}});
+    fields.push_back({"signal", {std::uint64_t(cell.signal)}});
+    fields.push_back({"pseudorange_m", rounded(cell.range_m)});
+    fields.push_back({"phase_range_m", rounded(cell.phase_range_m)});
+    fields.push_back({"range_rate_mps", rounded(cell.phase_range_rate)});
+    fields.push_back({"lock_s", {cell.lock_s}});
+    fields.push_back({"half_cycle_unknown", {std::uint64_t(cell.half_cycle_unknown)}});
+    fields.push_back({"cno_dbhz", {cell.cno_dbhz}});
+    return {std::move(fields)};
+}
 
 // A text with its length in the byte before (RTCM 10403.3, DF029 and its like).
 std::string counted_text(BitReader& reader) {
@@ -181,10 +201,17 @@ void list_rtcm3(ByteSpan payload, DecodedMessage& message) {
     lister.skip(12);
     message.id = fmt::format("{}", number);
     message.name = rtcm3_name(number);
-    if (list_known(number, lister))
+    if (list_known(number, lister)) {
         message.fields = lister.take();
-    else
+        if (const auto observed = decode_msm({number, {}, 0, payload})) {
+            std::vector<DecodedValue> cells;
+            for (const Rtcm3MsmCell& cell : observed->cells)
+                cells.push_back(cell_value(cell));
+            message.fields.push_back({"cells", {std::move(cells)}});
+        }
+    } else {
         message.payload.assign(payload.begin(), payload.end());
+    }
 }
 
 }  // namespace skyloop::inline receiver

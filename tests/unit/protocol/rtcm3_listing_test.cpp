@@ -5,6 +5,7 @@
 
 #include "base/core/bytes.hpp"
 #include "receiver/protocol/field_lister.hpp"
+#include "receiver/protocol/rtcm3.hpp"
 
 namespace skyloop {
 namespace {
@@ -109,6 +110,24 @@ TEST(Rtcm3Listing, MsmTellTheirSatellitesAndSignals) {
     EXPECT_EQ(listed(tail(gps)), "1077 GPS MSM7: station=7 tow_s=345600.5000" + rest);
     EXPECT_EQ(listed(tail(glonass)), "1084 GLONASS MSM4: station=7 day_of_week=4 time_of_day_s=3600.0000" + rest);
     EXPECT_EQ(listed(Rtcm3Writer(1078).bits(0, 400).bytes()), "1078 : 52 bytes") << "there is no MSM8";
+}
+
+TEST(Rtcm3Listing, MsmTellTheirCells) {
+    Rtcm3MsmObservations m;
+    m.number = 1074;
+    m.cells.resize(1);
+    m.cells[0].satellite = 9;
+    m.cells[0].range_m = 2.2e7;
+    m.cells[0].lock_s = 1.5;
+    m.cells[0].cno_dbhz = 43;
+    const Bytes frame = encode(m);
+    DecodedMessage message;
+    list_rtcm3(parse_rtcm3(frame)->payload, message);
+    const std::string line = text_line(message);
+    EXPECT_NE(line.find("cells=[{satellite=9 signal=2 pseudorange_m=21999999.9911"), std::string::npos) << line;
+    EXPECT_NE(line.find(" phase_range_m=- range_rate_mps=- lock_s=1.024 half_cycle_unknown=0 cno_dbhz=43}]"),
+              std::string::npos)
+        << line;
 }
 
 TEST(Rtcm3Listing, SatellitesOfEphemeridesHaveTheWidthOfTheirSystem) {

@@ -127,8 +127,64 @@ TEST(Rtcm3Msm, OtherKindsAndNothingAtAllAreNoMessage) {
     Rtcm3MsmObservations m;
     EXPECT_TRUE(encode(m).empty());
     m.cells = {msm_test_cell(7, 2, 2.2e7)};
-    m.number = 1075;
+    m.number = 1073;
     EXPECT_TRUE(encode(m).empty());
+}
+
+// Half a step of each field, of coarse kinds and fine ones.
+TEST(Rtcm3Msm, KindsFourToSevenComeBackToTheirResolution) {
+    for (const int kind : {4, 5, 6, 7}) {
+        Rtcm3MsmObservations m;
+        m.number = 1090 + kind;
+        m.station = 12;
+        m.epoch = 345600500;
+        m.cells = {msm_test_cell(7, 2, 22145739.3983), msm_test_cell(7, 16, 22145744.2), msm_test_cell(36, 16, 2.8e7)};
+        m.cells[1].phase_range_m.reset();
+        m.cells[2].half_cycle_unknown = true;
+        const Bytes frame = encode(m);
+        const auto back = decode_msm(*parse_rtcm3(frame));
+        ASSERT_TRUE(back) << kind;
+        EXPECT_EQ(back->number, m.number);
+        EXPECT_EQ(back->station, 12);
+        EXPECT_EQ(back->epoch, 345600500U);
+        ASSERT_EQ(back->cells.size(), 3u);
+        const bool fine = kind >= 6, rates = kind % 2 != 0;
+        const double ms = speed_of_light / 1000;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Rtcm3MsmCell &sent = m.cells[i], &heard = back->cells[i];
+            EXPECT_EQ(heard.satellite, sent.satellite);
+            EXPECT_EQ(heard.signal, sent.signal);
+            EXPECT_NEAR(heard.range_m, sent.range_m, ms * std::exp2(fine ? -30 : -25) + 1e-8);
+            ASSERT_EQ(heard.phase_range_m.has_value(), sent.phase_range_m.has_value());
+            EXPECT_NEAR(heard.phase_range_m.value_or(0), sent.phase_range_m.value_or(0),
+                        ms * std::exp2(fine ? -32 : -30) + 1e-8);
+            ASSERT_EQ(heard.phase_range_rate.has_value(), rates);
+            EXPECT_NEAR(heard.phase_range_rate.value_or(-512.3456), *sent.phase_range_rate, 5.1e-5);
+            EXPECT_NEAR(heard.cno_dbhz, sent.cno_dbhz, fine ? 0.032 : 0.51);
+            EXPECT_EQ(heard.half_cycle_unknown, sent.half_cycle_unknown);
+            EXPECT_LE(heard.lock_s, sent.lock_s);
+            EXPECT_GT(heard.lock_s, sent.lock_s * (fine ? 0.96 : 0.49));
+        }
+        for (std::size_t size = 2; size + 7 < frame.size(); ++size) {  // of the last byte some bits may be none's
+            const Bytes cut = encode_rtcm3(ByteSpan(frame).subspan(3, size));
+            const auto message = parse_rtcm3(cut);
+            EXPECT_FALSE(message && decode_msm(*message)) << size;
+        }
+    }
+}
+
+// Without whole milliseconds (255) there is neither range nor phase.
+TEST(Rtcm3Msm, SatellitesWithoutARangeAreLeftOut) {
+    Rtcm3MsmObservations m;
+    m.cells = {msm_test_cell(7, 2, 2.2e7)};
+    const Bytes frame = encode(m);
+    Bytes payload(frame.begin() + 3, frame.end() - 3);
+    // Eight bits behind the header and its one cell.
+    for (std::size_t bit = fixed_header_bits + 1; bit < fixed_header_bits + 9; ++bit)
+        payload[bit / 8] |= static_cast<std::uint8_t>(0x80 >> bit % 8);
+    const auto back = decode_msm(*parse_rtcm3(encode_rtcm3(payload)));
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(back->cells.empty());
 }
 
 }  // namespace
