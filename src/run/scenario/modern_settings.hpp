@@ -35,7 +35,7 @@ struct ModernSettings {
     std::optional<TroposphereCorrection> troposphere_correction;  ///< nothing: Niell's when there is a troposphere
     std::optional<Seconds> ephemeris_collection;  ///< nothing: what the search leaves of the board's warm start
     std::filesystem::path ionosphere_maps;        ///< IONEX file; empty: none
-    std::vector<std::filesystem::path> tables{};  ///< files of antennas and satellites that `propagation` was read from
+    std::vector<std::filesystem::path> tables{};  ///< files that `propagation` was read from
     std::string given{};                          ///< what the scenario says of all of it, as TOML; empty: nothing
     std::vector<std::string> idle_keys;     ///< what a reader should be told of keys that were given and cannot act
     std::string ionosphere_free_told_at{};  ///< "FILE:LINE:COLUMN: KEY: "; empty: the key is not there

@@ -97,50 +97,52 @@ void read_ramp(TableReader& table, SurroundingsStretch& stretch) {
     stretch.ramp = timed ? seconds : metres;
 }
 
-struct LandUse {
+struct LandUseWord {
     std::string_view tag;  // of OpenStreetMap (wiki, "Key:landuse", "Key:natural", "Key:aeroway")
     Surroundings around;
 };
 
 // Ours. Of an area with several of them the first.
-constexpr LandUse land_uses[] = {{"natural=wood", Surroundings::forest},
-                                 {"landuse=forest", Surroundings::forest},
-                                 {"landuse=residential", Surroundings::residential},
-                                 {"landuse=commercial", Surroundings::urban},
-                                 {"landuse=retail", Surroundings::urban},
-                                 {"landuse=industrial", Surroundings::urban},
-                                 {"landuse=farmland", Surroundings::rural},
-                                 {"landuse=farmyard", Surroundings::rural},
-                                 {"landuse=meadow", Surroundings::rural},
-                                 {"landuse=orchard", Surroundings::rural},
-                                 {"landuse=vineyard", Surroundings::rural},
-                                 {"landuse=allotments", Surroundings::rural},
-                                 {"natural=water", Surroundings::open_sky},
-                                 {"aeroway=aerodrome", Surroundings::open_sky}};
+constexpr LandUseWord land_uses[] = {{"natural=wood", Surroundings::forest},
+                                     {"landuse=forest", Surroundings::forest},
+                                     {"landuse=residential", Surroundings::residential},
+                                     {"landuse=commercial", Surroundings::urban},
+                                     {"landuse=retail", Surroundings::urban},
+                                     {"landuse=industrial", Surroundings::urban},
+                                     {"landuse=farmland", Surroundings::rural},
+                                     {"landuse=farmyard", Surroundings::rural},
+                                     {"landuse=meadow", Surroundings::rural},
+                                     {"landuse=orchard", Surroundings::rural},
+                                     {"landuse=vineyard", Surroundings::rural},
+                                     {"landuse=allotments", Surroundings::rural},
+                                     {"natural=water", Surroundings::open_sky},
+                                     {"aeroway=aerodrome", Surroundings::open_sky}};
 // Of areas that overlap the later one counts: woods lie in towns, lakes in woods.
 constexpr Surroundings land_use_order[] = {Surroundings::rural, Surroundings::residential, Surroundings::urban,
                                            Surroundings::forest, Surroundings::open_sky};
 
-Result<std::vector<SurroundingsStretch>> stretches_of_land(const std::filesystem::path& file) {
+Result<LandUse> known_land_use(const std::filesystem::path& file) {
     std::vector<std::string_view> tags;
-    for (const LandUse& use : land_uses)
+    for (const LandUseWord& use : land_uses)
         tags.push_back(use.tag);
-    const auto areas = read_land_use(file, tags);
-    if (!areas) return fail(areas.error());
+    return read_land_use(file, tags);
+}
+
+std::vector<SurroundingsStretch> stretches_of_land(const std::vector<LandUseArea>& areas, double ramp) {
     std::map<Surroundings, StretchOfPlace> places;
-    for (const LandUseArea& area : *areas) {
-        const auto use = std::ranges::find(land_uses, std::string_view(area.use), &LandUse::tag);
+    for (const LandUseArea& area : areas) {
+        const auto use = std::ranges::find(land_uses, std::string_view(area.use), &LandUseWord::tag);
         places[use->around].polygons.emplace_back(area.outer, area.holes);
     }
     std::vector<SurroundingsStretch> stretches;
     for (const Surroundings around : land_use_order)
         if (const auto place = places.find(around); place != places.end())
-            stretches.push_back({channel_of(around), std::move(place->second)});
+            stretches.push_back({channel_of(around), std::move(place->second), ramp});
     return stretches;
 }
 
 // Nothing where the table names no file.
-std::optional<std::vector<SurroundingsStretch>> read_land_use_file(TableReader& table, ModernSettings& modern,
+std::optional<std::vector<SurroundingsStretch>> read_land_use_file(TableReader& table, Scenario& scenario,
                                                                    const std::filesystem::path& folder) {
     std::filesystem::path file;
     table.file_path("land_use", folder, file, "in place of kind and where: areas of an OpenStreetMap file");
@@ -151,14 +153,15 @@ std::optional<std::vector<SurroundingsStretch>> read_land_use_file(TableReader& 
     if (file.empty()) return std::nullopt;
     for (const std::string_view key : refused)
         table.has_been_read(key);
-    modern.tables.push_back(file);
+    scenario.model.modern.tables.push_back(file);
     double ramp = standard_ramp_m;
     table.number("ramp_m", ramp, {0, longest_way_m});
-    auto stretches = stretches_of_land(file);
-    if (!stretches) return table.mistake("land_use", stretches.error()), std::vector<SurroundingsStretch>();
-    for (SurroundingsStretch& stretch : *stretches)
-        stretch.ramp = ramp;
-    return std::move(*stretches);
+    const auto land = known_land_use(file);
+    if (!land) return table.mistake("land_use", land.error()), std::vector<SurroundingsStretch>();
+    if (land->cut > 0)
+        scenario.warnings.push_back(fmt::format("{}{} of {} areas end outside of the file: left out",
+                                                table.told_at("land_use"), land->cut, land->cut + land->areas.size()));
+    return stretches_of_land(land->areas, ramp);
 }
 
 SurroundingsStretch read_stretch(TableReader& table) {
@@ -172,9 +175,9 @@ SurroundingsStretch read_stretch(TableReader& table) {
     return stretch;
 }
 
-void read_stretches(TableReader& table, ModernSettings& modern, const std::filesystem::path& folder) {
-    std::vector<SurroundingsStretch>& stretches = modern.propagation.stretches;
-    if (const auto land = read_land_use_file(table, modern, folder))
+void read_stretches(TableReader& table, Scenario& scenario, const std::filesystem::path& folder) {
+    std::vector<SurroundingsStretch>& stretches = scenario.model.modern.propagation.stretches;
+    if (const auto land = read_land_use_file(table, scenario, folder))
         stretches.insert(stretches.end(), land->begin(), land->end());
     else
         stretches.push_back(read_stretch(table));
@@ -206,7 +209,7 @@ void read_surroundings(TableReader& top, Scenario& scenario, const std::filesyst
     ModernSettings& modern = scenario.model.modern;
     const std::size_t before = top.idle_keys().size();
     top.tables("surroundings", "surroundings along the way; of those that overlap, the last",
-               [&](TableReader& t) { read_stretches(t, modern, folder); });
+               [&](TableReader& t) { read_stretches(t, scenario, folder); });
     const std::vector<std::string>& idle = top.idle_keys();
     modern.idle_keys.insert(modern.idle_keys.end(), idle.begin() + static_cast<std::ptrdiff_t>(before), idle.end());
     if (scenario.model.sensor_model && !modern.propagation.stretches.empty())

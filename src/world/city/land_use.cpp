@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/core/files.hpp"
 #include "base/core/words.hpp"
@@ -27,8 +28,7 @@ std::vector<Geodetic> corners_of(const std::vector<Eigen::Vector2d>& ring) {
 
 }  // namespace
 
-Result<std::vector<LandUseArea>> read_land_use(const std::filesystem::path& path,
-                                               std::span<const std::string_view> uses) {
+Result<LandUse> read_land_use(const std::filesystem::path& path, std::span<const std::string_view> uses) {
     const std::string name = lower_case(path.filename().string());
     const bool packed = name.find(".pbf") != std::string::npos;
     if (!packed && name.find(".osm") == std::string::npos)
@@ -59,7 +59,7 @@ Result<std::vector<LandUseArea>> read_land_use(const std::filesystem::path& path
     if (areas.empty())
         return fail(ErrorCode::input, fmt::format("{}: has no area of a known use; expected one, as {}", path.string(),
                                                   fmt::join(uses.first(std::min<std::size_t>(uses.size(), 3)), ", ")));
-    return areas;
+    return LandUse{std::move(areas), read->dropped};
 }
 
 }  // namespace skyloop::inline world

@@ -1,6 +1,7 @@
 /// How land is used, from OpenStreetMap.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -19,11 +20,14 @@ struct LandUseArea {
     std::vector<std::vector<Geodetic>> holes;
 };
 
+struct LandUse {
+    std::vector<LandUseArea> areas;
+    std::size_t cut = 0;  ///< areas that were left out: corners of them are not in the file, as at an extract's edge
+};
+
 /// The areas that have one of some tags, in the order of the file's numbers: of several tags the first in `uses`.
-/// .osm or .pbf, also compressed. Areas of which corners are missing, as at the edge of an extract, are left out. Fails
-/// with `outside` when it cannot be opened, with `input` and FILE:LINE or the place when it is damaged, of another
-/// format, or has no such area.
-Result<std::vector<LandUseArea>> read_land_use(const std::filesystem::path& path,
-                                               std::span<const std::string_view> uses);
+/// .osm or .pbf, also compressed. Fails with `outside` when it cannot be opened, with `input` and FILE:LINE or the
+/// place when it is damaged, of another format, or has no such area.
+Result<LandUse> read_land_use(const std::filesystem::path& path, std::span<const std::string_view> uses);
 
 }  // namespace skyloop::inline world

@@ -21,30 +21,37 @@ const std::string nodes = R"(
 const std::string square = R"(<way id="1"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/>)";
 const std::string inner = R"(<way id="2"><nd ref="5"/><nd ref="6"/><nd ref="7"/><nd ref="8"/><nd ref="5"/></way>)";
 
-Result<std::vector<LandUseArea>> land_use_of(const std::string& content, const std::string& name = "town.osm") {
+Result<LandUse> land_use_of(const std::string& content, const std::string& name = "town.osm") {
     const std::string path = testing::TempDir() + name;
     std::ofstream(path) << "<osm version=\"0.6\">" + nodes + content + "</osm>";
     return read_land_use(path, uses);
 }
 
 TEST(LandUse, TakesTheFirstKnownTagOfAnArea) {
-    const auto areas =
-        land_use_of(square + R"(<tag k="landuse" v="forest"/><tag k="natural" v="wood"/></way>)" + inner);
-    ASSERT_TRUE(areas) << areas.error().message;
-    ASSERT_EQ(areas->size(), 1u);
-    EXPECT_EQ(areas->front().use, "natural=wood");
-    EXPECT_EQ(areas->front().outer.size(), 4u);
-    EXPECT_TRUE(areas->front().holes.empty());
+    const auto land = land_use_of(square + R"(<tag k="landuse" v="forest"/><tag k="natural" v="wood"/></way>)" + inner);
+    ASSERT_TRUE(land) << land.error().message;
+    ASSERT_EQ(land->areas.size(), 1u);
+    EXPECT_EQ(land->areas.front().use, "natural=wood");
+    EXPECT_EQ(land->areas.front().outer.size(), 4u);
+    EXPECT_TRUE(land->areas.front().holes.empty());
 }
 
 TEST(LandUse, LeavesClearingsOpen) {
-    const auto areas = land_use_of(square + R"(<tag k="landuse" v="forest"/></way>)" + inner +
-                                   R"(<relation id="9"><member type="way" ref="1" role="outer"/>
+    const auto land = land_use_of(square + R"(<tag k="landuse" v="forest"/></way>)" + inner +
+                                  R"(<relation id="9"><member type="way" ref="1" role="outer"/>
 <member type="way" ref="2" role="inner"/><tag k="type" v="multipolygon"/><tag k="landuse" v="forest"/></relation>)");
-    ASSERT_TRUE(areas) << areas.error().message;
-    ASSERT_EQ(areas->size(), 1u);  // the border says again what its relation says
-    ASSERT_EQ(areas->front().holes.size(), 1u);
-    EXPECT_NEAR(areas->front().holes[0][2].latitude.deg(), 50.0007, 1e-9);
+    ASSERT_TRUE(land) << land.error().message;
+    ASSERT_EQ(land->areas.size(), 1u);  // the border says again what its relation says
+    ASSERT_EQ(land->areas.front().holes.size(), 1u);
+    EXPECT_NEAR(land->areas.front().holes[0][2].latitude.deg(), 50.0007, 1e-9);
+}
+
+TEST(LandUse, CountsWhatAnExtractCuts) {
+    const auto land = land_use_of(square + R"(<tag k="landuse" v="forest"/></way>
+<way id="3"><nd ref="1"/><nd ref="77"/><nd ref="3"/><nd ref="1"/><tag k="landuse" v="forest"/></way>)");
+    ASSERT_TRUE(land) << land.error().message;
+    EXPECT_EQ(land->areas.size(), 1u);
+    EXPECT_EQ(land->cut, 1u);
 }
 
 TEST(LandUse, SaysWhatIsWrong) {

@@ -109,8 +109,13 @@ TEST(SurroundingsKeys, ByTheUseOfLand) {
 <node id="7" lat="50.0007" lon="10.0007"/><node id="8" lat="50.0007" lon="10.0002"/><node id="9" lat="50.002" lon="10"/>
 <way id="1"><nd ref="5"/><nd ref="6"/><nd ref="7"/><nd ref="8"/><nd ref="5"/><tag k="natural" v="water"/></way>
 <way id="2"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/><tag k="landuse" v="forest"/></way>
-<way id="3"><nd ref="4"/><nd ref="3"/><nd ref="9"/><nd ref="4"/><tag k="landuse" v="residential"/></way></osm>)";
-    const ModernSettings read = modern_with("[[surroundings]]\nland_use = \"" + path + "\"\nramp_m = 7");
+<way id="3"><nd ref="4"/><nd ref="3"/><nd ref="9"/><nd ref="4"/><tag k="landuse" v="residential"/></way>
+<way id="4"><nd ref="4"/><nd ref="3"/><nd ref="77"/><nd ref="4"/><tag k="landuse" v="meadow"/></way></osm>)";
+    const Scenario scenario = scenario_of("[[surroundings]]\nland_use = \"" + path + "\"\nramp_m = 7");
+    const ModernSettings& read = scenario.model.modern;
+    ASSERT_EQ(scenario.warnings.size(), 1u);
+    EXPECT_THAT(scenario.warnings[0],
+                HasSubstr("test.toml:2:12: surroundings.land_use: 1 of 4 areas end outside of the file: left out"));
     ASSERT_EQ(read.tables, std::vector<std::filesystem::path>{path});
     const auto& stretches = read.propagation.stretches;
     ASSERT_EQ(stretches.size(), 3u);
