@@ -248,12 +248,12 @@ Bytes encode(const Rtcm3MsmObservations& observations) {
 }
 
 std::optional<Rtcm3MsmObservations> decode_msm(const Rtcm3Message& message) {
-    constexpr int header_bits = 12 + 12 + 30 + 1 + 3 + 7 + 2 + 2 + 1 + 3 + 64 + 32;
+    constexpr std::size_t header_bits = 12 + 12 + 30 + 1 + 3 + 7 + 2 + 2 + 1 + 3 + 64 + 32;
     const auto form = form_of(message.number);
     const auto header = form ? decode_msm_header(message) : std::nullopt;
     if (!header) return std::nullopt;
     BitReader bits(message.payload);
-    bits.skip(header_bits + static_cast<int>(header->cells.size()));
+    bits.skip(header_bits + header->cells.size());
     const std::vector<HeardSatellite> satellites = get_satellites(bits, *header, *form);
     std::vector<HeardCell> heard;
     std::size_t place = 0;
