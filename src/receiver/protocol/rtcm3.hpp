@@ -96,7 +96,7 @@ struct Rtcm3MsmObservations {
 /// nearer, which only moves their unknown number of cycles. Satellites that would make more than 64 cells are left out,
 /// those of the highest numbers first. Empty for other kinds and for no cells at all.
 Bytes encode(const Rtcm3MsmObservations& observations);
-/// Cells whose pseudorange is said to be none are left out; wavelengths are not told. Lock times are the least that the
+/// Cells without a valid pseudorange are left out; wavelengths are not transmitted. Lock times are the least that the
 /// indicators allow. Nothing for other kinds and cut messages.
 std::optional<Rtcm3MsmObservations> decode_msm(const Rtcm3Message& message);
 

@@ -158,7 +158,7 @@ std::optional<double> get_fine(BitReader& bits, int width) {
     return static_cast<double>(number);
 }
 
-// As they stand in the mask.
+// Numbers of the set bits, the first bit being 1.
 std::vector<int> set_bits(std::uint64_t mask, int width) {
     std::vector<int> numbers;
     for (int i = 1; i <= width; ++i)
@@ -166,55 +166,55 @@ std::vector<int> set_bits(std::uint64_t mask, int width) {
     return numbers;
 }
 
-// What the cells of one satellite share, as it is heard.
-struct HeardSatellite {
+// What the cells of one satellite share, as decoded.
+struct DecodedSatellite {
     int number = 0, info = 0;
     std::optional<double> range_ms;
     std::optional<double> rate;  // m/s
 };
 
-std::vector<HeardSatellite> get_satellites(BitReader& bits, const Rtcm3MsmHeader& header, const MsmForm& form) {
+std::vector<DecodedSatellite> get_satellites(BitReader& bits, const Rtcm3MsmHeader& header, const MsmForm& form) {
     constexpr std::uint64_t no_range = 255;  // DF397
-    std::vector<HeardSatellite> satellites;
+    std::vector<DecodedSatellite> satellites;
     for (const int number : set_bits(header.satellites, 64))
         satellites.push_back({number, 0, {}, {}});
-    for (HeardSatellite& satellite : satellites)
+    for (DecodedSatellite& satellite : satellites)
         if (const std::uint64_t whole = bits.get(8); whole != no_range) satellite.range_ms = static_cast<double>(whole);
-    for (HeardSatellite& satellite : satellites)
+    for (DecodedSatellite& satellite : satellites)
         if (form.rates) satellite.info = static_cast<int>(bits.get(4));
-    for (HeardSatellite& satellite : satellites) {
+    for (DecodedSatellite& satellite : satellites) {
         const double fraction = static_cast<double>(bits.get(10)) / 1024;
         if (satellite.range_ms) *satellite.range_ms += fraction;
     }
-    for (HeardSatellite& satellite : satellites)
+    for (DecodedSatellite& satellite : satellites)
         if (form.rates) satellite.rate = get_fine(bits, 14);
     return satellites;
 }
 
-struct HeardCell {
-    const HeardSatellite* satellite;
+struct DecodedCell {
+    const DecodedSatellite* satellite;
     Rtcm3MsmCell cell;
     bool has_range = false;
 };
 
-void get_signals(BitReader& bits, std::vector<HeardCell>& heard, const MsmForm& form) {
-    for (HeardCell& one : heard)
+void get_signals(BitReader& bits, std::vector<DecodedCell>& cells, const MsmForm& form) {
+    for (DecodedCell& one : cells)
         if (const auto fine = get_fine(bits, form.range_bits()); fine && one.satellite->range_ms) {
             one.cell.range_m = (*one.satellite->range_ms + *fine / form.range_scale()) * metres_per_ms;
             one.has_range = true;
         }
-    for (HeardCell& one : heard)
+    for (DecodedCell& one : cells)
         if (const auto fine = get_fine(bits, form.phase_bits()); fine && one.satellite->range_ms)
             one.cell.phase_range_m = (*one.satellite->range_ms + *fine / form.phase_scale()) * metres_per_ms;
-    for (HeardCell& one : heard) {
+    for (DecodedCell& one : cells) {
         const std::uint64_t indicator = bits.get(form.lock_bits());
         one.cell.lock_s = 1e-3 * (form.fine ? time_of_long_lock(indicator) : time_of_short_lock(indicator));
     }
-    for (HeardCell& one : heard)
+    for (DecodedCell& one : cells)
         one.cell.half_cycle_unknown = bits.get(1) != 0;
-    for (HeardCell& one : heard)
+    for (DecodedCell& one : cells)
         one.cell.cno_dbhz = static_cast<double>(bits.get(form.cno_bits())) / form.cno_scale();
-    for (HeardCell& one : heard)
+    for (DecodedCell& one : cells)
         if (const auto fine = form.rates ? get_fine(bits, 15) : std::nullopt; fine && one.satellite->rate)
             one.cell.phase_range_rate = *one.satellite->rate + *fine / rate_scale;
 }
@@ -254,21 +254,21 @@ std::optional<Rtcm3MsmObservations> decode_msm(const Rtcm3Message& message) {
     if (!header) return std::nullopt;
     BitReader bits(message.payload);
     bits.skip(header_bits + header->cells.size());
-    const std::vector<HeardSatellite> satellites = get_satellites(bits, *header, *form);
-    std::vector<HeardCell> heard;
+    const std::vector<DecodedSatellite> satellites = get_satellites(bits, *header, *form);
+    std::vector<DecodedCell> cells;
     std::size_t place = 0;
-    for (const HeardSatellite& satellite : satellites)
+    for (const DecodedSatellite& satellite : satellites)
         for (const int signal : set_bits(header->signals, 32))
             if (header->cells.at(place++)) {
-                heard.push_back({&satellite, {}});
-                heard.back().cell.satellite = satellite.number;
-                heard.back().cell.signal = signal;
-                heard.back().cell.satellite_info = satellite.info;
+                cells.push_back({&satellite, {}});
+                cells.back().cell.satellite = satellite.number;
+                cells.back().cell.signal = signal;
+                cells.back().cell.satellite_info = satellite.info;
             }
-    get_signals(bits, heard, *form);
+    get_signals(bits, cells, *form);
     if (!bits.ok()) return std::nullopt;
     Rtcm3MsmObservations result{header->number, header->station, header->epoch, header->more, {}};
-    for (const HeardCell& one : heard)
+    for (const DecodedCell& one : cells)
         if (one.has_range) result.cells.push_back(one.cell);
     return result;
 }
