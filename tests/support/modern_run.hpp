@@ -32,7 +32,7 @@ inline ModernContext context_of(const ModernSettings& settings, const Navigation
     context.broadcast = navigation.ionosphere();
     if (settings.navigation.corrections.ionosphere != IonosphereCorrection::none)
         context.receiver_correction = IonosphereModel::klobuchar;
-    context.sky_seed = context.receiver_seed = seed;
+    context.seed = seed;
     return context;
 }
 

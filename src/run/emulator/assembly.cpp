@@ -306,10 +306,10 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
 }
 
 Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSetup& setup) {
-    auto effects = scenario.model.sensor_model
-                       ? sensor_effects_of(scenario, setup)
-                       : modern_effects_of(scenario, *setup.navigation,
-                                           {setup.geoid, setup.start, setup.data, setup.gas_losses, setup.receiver});
+    auto effects =
+        scenario.model.sensor_model
+            ? sensor_effects_of(scenario, setup)
+            : modern_effects_of(scenario, *setup.navigation, {setup.geoid, setup.start, setup.data, setup.gas_losses});
     if (!effects) return fail(effects.error());
     auto path = make_antenna_path(scenario, setup);
     const auto last_place = place_before_start(scenario, setup.receiver, path->at(setup.start));

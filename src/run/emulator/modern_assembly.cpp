@@ -82,8 +82,7 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     context.maps = std::move(*maps);
     context.nequick_folder = nequick_folder(world.data);
     context.geoid = world.geoid;
-    context.sky_seed = scenario.run.seed_of_sky();
-    context.receiver_seed = receiver_seed(scenario.run, world.receiver);
+    context.seed = scenario.run.seed_of_sky();
     context.gas_losses = world.gas_losses;
     return modern_effects(settings.propagation, context);
 }

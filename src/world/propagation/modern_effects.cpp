@@ -31,9 +31,9 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const Mod
 
     std::vector<std::unique_ptr<PropagationEffect>> effects;
     effects.push_back(std::make_unique<SignalInSpaceError>(parameters.signal_in_space_model, parameters.signal_in_space,
-                                                           context.sky_seed));
-    effects.push_back(std::make_unique<IonosphereDelay>(std::move(*truth), parameters, residual, context.sky_seed));
-    effects.push_back(std::make_unique<TroposphereDelay>(parameters, air, site, context.sky_seed));
+                                                           context.seed));
+    effects.push_back(std::make_unique<IonosphereDelay>(std::move(*truth), parameters, residual, context.seed));
+    effects.push_back(std::make_unique<TroposphereDelay>(parameters, air, site, context.seed));
     effects.push_back(std::make_unique<GasLoss>(parameters.gas, context.geoid, context.gas_losses));
     effects.push_back(std::make_unique<CloudLoss>(air.clouds, parameters.clouds, context.geoid));
     effects.push_back(std::make_unique<RainLoss>(air.rain, parameters, context.geoid));
@@ -43,8 +43,8 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const Mod
     if (parameters.channel_model.acts() || !parameters.stretches.empty())
         effects.push_back(std::make_unique<SurroundingsEffect>(
             SurroundingsParameters{parameters.channel_model, parameters.stretches, context.run.first},
-            parameters.channel, context.sky_seed));
-    effects.push_back(std::make_unique<ModernLinkBudget>(parameters, context.sky_seed, context.receiver_seed));
+            parameters.channel, context.seed));
+    effects.push_back(std::make_unique<ModernLinkBudget>(parameters, context.seed));
     return effects;
 }
 

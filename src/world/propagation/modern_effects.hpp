@@ -34,8 +34,7 @@ struct ModernContext {
     std::filesystem::path nequick_folder{};     ///< of kind `nequick_g`: share/skyloop/nequick_g
     const Geoid* geoid = nullptr;               ///< must outlive the effects; without one heights stay ellipsoidal
     LeapSeconds leap_seconds = LeapSeconds::announced();
-    std::uint64_t sky_seed = 1;       ///< of what all receivers share
-    std::uint64_t receiver_seed = 1;  ///< of what is around the antenna alone
+    std::uint64_t seed = 1;
     /// Of L1. Its rows take milliseconds each: receivers of one thread share them.
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
 };

@@ -86,15 +86,13 @@ Decibels relative_signal_power(Constellation constellation, Signal signal, Metre
     }
 }
 
-ModernLinkBudget::ModernLinkBudget(const ModernPropagationParameters& parameters, std::uint64_t sky_seed,
-                                   std::uint64_t receiver_seed)
+ModernLinkBudget::ModernLinkBudget(const ModernPropagationParameters& parameters, std::uint64_t seed)
     : link_(parameters.link),
       power_term_(parameters.satellite_power),
       antenna_factor_(parameters.antenna.factor()),
       interference_factor_(parameters.interference.factor()),
       film_(parameters.loss_model.antenna_film),
-      sky_seed_(sky_seed),
-      receiver_seed_(receiver_seed) {}
+      seed_(seed) {}
 
 DecibelWatts ModernLinkBudget::isotropic_power(const Arrival& arrival, const TruthState& truth) const {
     const SphericalRay ray = ray_from_antenna(arrival, truth);
@@ -153,10 +151,10 @@ void ModernLinkBudget::apply(Arrivals& arrivals, const SkyView& /*sky*/, const T
             Power& power = powers_.of(arrival.id, [this](SatelliteId id) {
                 const std::string name = "satellite_power." + to_string(id);
                 // Satellites lie within two deviations: a satellite that is stronger than any real one helps nobody.
-                const double normal = std::clamp(power_term_.stream(sky_seed_, name).normal(), -2.0, 2.0);
+                const double normal = std::clamp(power_term_.stream(seed_, name).normal(), -2.0, 2.0);
                 const double spread = normal * link_.satellite_spread.value();
                 return Power{spread, KnottedProcess({1, link_.ripple_time}, ripple_spacing,
-                                                    power_term_.stream(receiver_seed_, name + ".ripple"))};
+                                                    power_term_.stream(seed_, name + ".ripple"))};
             });
             const double ripple =
                 link_.ripple.value() + link_.ripple_at_horizon.value() * low_share(arrival.direction.elevation);

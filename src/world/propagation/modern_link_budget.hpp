@@ -24,9 +24,7 @@ Decibels relative_signal_power(Constellation constellation, Signal signal, Metre
 /// State: spread and ripple of each satellite that has been in view.
 class ModernLinkBudget : public PropagationEffect {
 public:
-    /// @param sky_seed of the satellites' powers  @param receiver_seed of the ripples around an antenna
-    ModernLinkBudget(const ModernPropagationParameters& parameters, std::uint64_t sky_seed,
-                     std::uint64_t receiver_seed);
+    ModernLinkBudget(const ModernPropagationParameters& parameters, std::uint64_t seed);
     void apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) override;
     /// In an isotropic antenna, before all losses but that of distance.
     [[nodiscard]] DecibelWatts isotropic_power(const Arrival& arrival, const TruthState& truth) const;
@@ -44,7 +42,7 @@ private:
     ErrorTerm power_term_;
     double antenna_factor_, interference_factor_;
     Decibels film_;
-    std::uint64_t sky_seed_, receiver_seed_;
+    std::uint64_t seed_;
     PerSatellite<Power> powers_;
 };
 

@@ -100,9 +100,9 @@ TEST(ModernEffects, TheSameSeedGivesTheSameArrivals) {
                                              a.tropo_delay.value(), a.cn0->value()});
         return values;
     };
-    const auto first = fields(run_modern({}, {.sky_seed = 5}));
-    EXPECT_EQ(first, fields(run_modern({}, {.sky_seed = 5})));
-    EXPECT_NE(first, fields(run_modern({}, {.sky_seed = 6})));
+    const auto first = fields(run_modern({}, {.seed = 5}));
+    EXPECT_EQ(first, fields(run_modern({}, {.seed = 5})));
+    EXPECT_NE(first, fields(run_modern({}, {.seed = 6})));
 }
 
 TEST(ModernEffects, MakeAResidualOnlyWhereTheReceiverCorrectsAllElse) {

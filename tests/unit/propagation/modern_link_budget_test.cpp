@@ -22,7 +22,7 @@ ModernPropagationParameters even_powers() {
 }
 
 Arrival link_arrival(const ModernPropagationParameters& parameters, const SatelliteInView& satellite) {
-    ModernLinkBudget effect(parameters, 1, 1);
+    ModernLinkBudget effect(parameters, 1);
     const TruthState truth = test::truth_of(test::odessa_place, test::april_noon);
     return test::after(effect, {{satellite}}, truth).satellites[0];
 }
@@ -79,7 +79,7 @@ TEST(ModernLinkBudget, KnowsTheSystemsAndTheirDistances) {
 }
 
 TEST(ModernLinkBudget, SubtractsEveryLossOfTheArrival) {
-    ModernLinkBudget effect(even_powers(), 1, 1);
+    ModernLinkBudget effect(even_powers(), 1);
     const SkyView sky = test::gps_ring(1);
     Arrivals arrivals = free_space(sky);
     Arrival& arrival = arrivals.satellites[0];
@@ -184,7 +184,7 @@ TEST(ModernLinkBudget, AcceptsThePatternOfTheSatellites) {
     parameters.link.satellite_pattern = {{Angle::degrees(0), DecibelWatts(25)}, {Angle::degrees(14), DecibelWatts(27)}};
     const SatelliteInView satellite = test::satellite_at({Constellation::gps, 3}, 40, 90);
     const Arrival arrival = link_arrival(parameters, satellite);
-    const ModernLinkBudget budget(parameters, 1, 1);
+    const ModernLinkBudget budget(parameters, 1);
     const TruthState truth = test::truth_of(test::odessa_place, test::april_noon);
     EXPECT_NEAR(budget.isotropic_power(arrival, truth).value(), 25 - arrival.free_space_loss.value(), 1e-6);
     // 5° up the boresight angle is 13.8°.
@@ -193,7 +193,7 @@ TEST(ModernLinkBudget, AcceptsThePatternOfTheSatellites) {
 }
 
 TEST(ModernLinkBudget, SatellitesDifferAndRipple) {
-    ModernLinkBudget effect({}, 2, 2);
+    ModernLinkBudget effect({}, 2);
     SkyView sky;
     for (int i = 1; i <= 400; ++i)
         sky.satellites.push_back(test::satellite_at({Constellation::gps, i}, 10, 40));
@@ -216,9 +216,9 @@ TEST(ModernLinkBudget, SatellitesDifferAndRipple) {
     }
     EXPECT_NEAR(std::sqrt(spread), 1.5, 0.15);
     EXPECT_NEAR(std::sqrt(ripple), 0.5, 0.03);
-    ModernLinkBudget alone({}, 2, 2);
+    ModernLinkBudget alone({}, 2);
     const TruthState later = test::truth_of(test::odessa_place, test::april_noon);
-    ModernLinkBudget together({}, 2, 2);
+    ModernLinkBudget together({}, 2);
     EXPECT_EQ(test::after(alone, {{sky.satellites[7]}}, later).satellites[0].power_offset,
               test::after(together, sky, later).satellites[7].power_offset);
     EXPECT_EQ(link_arrival(even_powers(), sky.satellites[0]).power_offset.value(), 0);

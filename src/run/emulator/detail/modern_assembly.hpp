@@ -34,7 +34,6 @@ struct WorldData {
     GpsTime start;
     DataFolders data;
     std::shared_ptr<GasLossTable> gas_losses;
-    std::size_t receiver = 0;  ///< its number in the scenario
 };
 
 /// The effects of the modern profile, from a scenario's settings. Fails with `input` when a file they need is missing
