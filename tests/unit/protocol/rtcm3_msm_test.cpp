@@ -151,19 +151,19 @@ TEST(Rtcm3Msm, KindsFourToSevenComeBackToTheirResolution) {
         const bool fine = kind >= 6, rates = kind % 2 != 0;
         const double ms = speed_of_light / 1000;
         for (std::size_t i = 0; i < 3; ++i) {
-            const Rtcm3MsmCell &sent = m.cells[i], &heard = back->cells[i];
-            EXPECT_EQ(heard.satellite, sent.satellite);
-            EXPECT_EQ(heard.signal, sent.signal);
-            EXPECT_NEAR(heard.range_m, sent.range_m, ms * std::exp2(fine ? -30 : -25) + 1e-8);
-            ASSERT_EQ(heard.phase_range_m.has_value(), sent.phase_range_m.has_value());
-            EXPECT_NEAR(heard.phase_range_m.value_or(0), sent.phase_range_m.value_or(0),
+            const Rtcm3MsmCell &sent = m.cells[i], &decoded = back->cells[i];
+            EXPECT_EQ(decoded.satellite, sent.satellite);
+            EXPECT_EQ(decoded.signal, sent.signal);
+            EXPECT_NEAR(decoded.range_m, sent.range_m, ms * std::exp2(fine ? -30 : -25) + 1e-8);
+            ASSERT_EQ(decoded.phase_range_m.has_value(), sent.phase_range_m.has_value());
+            EXPECT_NEAR(decoded.phase_range_m.value_or(0), sent.phase_range_m.value_or(0),
                         ms * std::exp2(fine ? -32 : -30) + 1e-8);
-            ASSERT_EQ(heard.phase_range_rate.has_value(), rates);
-            EXPECT_NEAR(heard.phase_range_rate.value_or(-512.3456), *sent.phase_range_rate, 5.1e-5);
-            EXPECT_NEAR(heard.cno_dbhz, sent.cno_dbhz, fine ? 0.032 : 0.51);
-            EXPECT_EQ(heard.half_cycle_unknown, sent.half_cycle_unknown);
-            EXPECT_LE(heard.lock_s, sent.lock_s);
-            EXPECT_GT(heard.lock_s, sent.lock_s * (fine ? 0.96 : 0.49));
+            ASSERT_EQ(decoded.phase_range_rate.has_value(), rates);
+            EXPECT_NEAR(decoded.phase_range_rate.value_or(-512.3456), *sent.phase_range_rate, 5.1e-5);
+            EXPECT_NEAR(decoded.cno_dbhz, sent.cno_dbhz, fine ? 0.032 : 0.51);
+            EXPECT_EQ(decoded.half_cycle_unknown, sent.half_cycle_unknown);
+            EXPECT_LE(decoded.lock_s, sent.lock_s);
+            EXPECT_GT(decoded.lock_s, sent.lock_s * (fine ? 0.96 : 0.49));
         }
         for (std::size_t size = 2; size + 7 < frame.size(); ++size) {  // of the last byte some bits may be none's
             const Bytes cut = encode_rtcm3(ByteSpan(frame).subspan(3, size));
