@@ -3,7 +3,7 @@ import { colour } from "./appearance.js";
 import { context, once, polyline } from "./canvas.js";
 import { byId } from "./dom.js";
 import { roundMetres } from "./format.js";
-import { drawTimes, timeWindow } from "./time_axis.js";
+import { drawTimes, takeGridPen, timeWindow } from "./time_axis.js";
 
 const left = 52;
 const right = 10;
@@ -77,10 +77,7 @@ export class ErrorPlot {
     }
 
     drawGrid(pen, { x, y, height, width, decades, begin, span }) {
-        pen.strokeStyle = colour("grid");
-        pen.fillStyle = colour("ink-soft");
-        pen.lineWidth = 1;
-        pen.textBaseline = "middle";
+        takeGridPen(pen);
         pen.textAlign = "right";
         pen.beginPath();
         const every = Math.ceil((decades + 1) / Math.max(Math.floor((height - top - bottom) / 20), 2));

@@ -11,14 +11,19 @@ export function timeWindow(history, span, now) {
     return { begin: Math.max(now - shown, 0), span: shown };
 }
 
-/** Lines from `top` to `bottom` at round times, with the times below; x(time), `left` and `right` in pixels. */
-export function drawTimes(pen, { x, begin, span, now, left, right, top, bottom }) {
-    const step = clockStep((span * 80) / (right - left));
+/** Makes a pen that of grids and their labels. */
+export function takeGridPen(pen) {
     pen.strokeStyle = colour("grid");
     pen.fillStyle = colour("ink-soft");
     pen.lineWidth = 1;
-    pen.textAlign = "center";
     pen.textBaseline = "middle";
+}
+
+/** Lines from `top` to `bottom` at round times, with the times below; x(time), `left` and `right` in pixels. */
+export function drawTimes(pen, { x, begin, span, now, left, right, top, bottom }) {
+    const step = clockStep((span * 80) / (right - left));
+    takeGridPen(pen);
+    pen.textAlign = "center";
     pen.beginPath();
     for (let time = Math.max(Math.ceil(begin / step) * step, 0); time <= now; time += step) {
         const at = Math.round(x(time)) + 0.5;
