@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/core/files.hpp"
+#include "base/geo/local_frame.hpp"
 #include "base/time/utc_time.hpp"
 #include "commands.hpp"
 #include "receiver/pvt/navigation_engine.hpp"
@@ -26,6 +27,8 @@ struct SolveOptions {
     std::string observations;
     std::vector<std::string> nav;
     std::string sp3;
+    std::string base;
+    std::vector<double> base_position;
     std::string out;
     std::vector<std::string> systems;
     double mask_deg = 10;
@@ -184,9 +187,58 @@ struct SolvedCounts {
     std::size_t epochs = 0, fixes = 0;
 };
 
-SolvedCounts solve_epochs(ObservationFile& file, NavigationEngine& engine, const SolveOptions& options,
-                          const NavigationSource& broadcast, OutputFile& out) {
-    const ReceiverSettings settings = settings_of(options);
+// The station of --base, epoch after epoch, as its corrections would come in time for the same epoch.
+class BaseFile {
+public:
+    BaseFile(ObservationFile file, Position<Ecef> position, const NavigationSource& broadcast)
+        : file_(std::move(file)), position_(position), broadcast_(broadcast) {}
+
+    // Its last epoch that is not later.
+    Corrections at(GpsTime time) {
+        // A clock that is ahead of the other's by half a millisecond shows the same epoch.
+        const GpsTime latest = time + std::chrono::milliseconds(1);
+        for (; next_ < file_.epochs.size() && file_.epochs[next_].receive_time <= latest; ++next_) {
+            set_glonass_carriers(file_.epochs[next_], broadcast_);
+            auto station = std::make_shared<ReferenceStation>();
+            station->position = position_;
+            station->glonass_biases_known = true;
+            station->epoch = {file_.epochs[next_].receive_time, file_.epochs[next_].signals};
+            corrections_.reference = std::move(station);
+            corrections_.at_most = CorrectionState::rtk_fixed;
+        }
+        return corrections_;
+    }
+
+private:
+    ObservationFile file_;
+    Position<Ecef> position_;
+    const NavigationSource& broadcast_;
+    std::size_t next_ = 0;
+    Corrections corrections_;
+};
+
+// Nothing without --base.
+Result<std::optional<BaseFile>> base_of(const SolveOptions& options, const NavigationSource& broadcast,
+                                        const Messages& messages) {
+    if (options.base.empty()) return std::nullopt;
+    auto file = read_observation_file(options.base);
+    if (!file) return fail(file.error());
+    messages.warnings(file->warnings);
+    const std::vector<double>& told = options.base_position;
+    if (!told.empty())
+        return BaseFile(std::move(*file), to_ecef(Geodetic::degrees(told[0], told[1], told[2])), broadcast);
+    if (!file->approximate_position)
+        return fail({ErrorCode::usage,
+                     fmt::format("{} does not say where its antenna stands; give --base-position", options.base)});
+    const LocalFrame marker(to_geodetic(*file->approximate_position));
+    const AntennaDelta& d = file->antenna_delta;
+    const auto antenna = marker.to_ecef(Position<Enu>(d.east.value(), d.north.value(), d.height.value()));
+    return BaseFile(std::move(*file), antenna, broadcast);
+}
+
+SolvedCounts solve_epochs(ObservationFile& file, NavigationEngine& engine, std::optional<BaseFile>& base,
+                          const SolveOptions& options, OutputFile& out) {
+    ReceiverSettings settings = settings_of(options);
     const std::set<Constellation> wanted = wanted_systems(options);
     SolvedCounts counts;
     out.write(solved_header);
@@ -194,7 +246,7 @@ SolvedCounts solve_epochs(ObservationFile& file, NavigationEngine& engine, const
         if (!wanted.empty())
             std::erase_if(epoch.signals,
                           [&](const Observation& o) { return !wanted.contains(o.satellite.constellation); });
-        set_glonass_carriers(epoch, broadcast);
+        if (base) settings.corrections = base->at(epoch.receive_time);
         const Fix fix = engine.solve(epoch, settings);
         out.write(solved_row(fix, engine.velocity_known()));
         ++counts.epochs;
@@ -210,7 +262,7 @@ int solve_file(const SolveOptions& options) {
                                "solve needs orbits; give navigation data with --nav or an SP3 file "
                                "with --sp3"});
     std::vector<std::filesystem::path> inputs(options.nav.begin(), options.nav.end());
-    inputs.insert(inputs.end(), {options.observations, options.sp3});
+    inputs.insert(inputs.end(), {options.observations, options.sp3, options.base});
     if (const auto spared = check_spares("--out", options.out, inputs); !spared) return messages.error(spared.error());
     auto file = read_observation_file(options.observations);
     if (!file) return messages.error(file.error());
@@ -220,6 +272,10 @@ int solve_file(const SolveOptions& options) {
     auto precise = precise_of(options, *file, messages);
     if (!precise) return messages.error(precise.error());
     const KnownOrbits orbits{std::move(*broadcast), std::move(*precise)};
+    for (Observations& epoch : file->epochs)
+        set_glonass_carriers(epoch, *orbits.broadcast);
+    auto base = base_of(options, *orbits.broadcast, messages);
+    if (!base) return messages.error(base.error());
     warn_of_systems(options, *file, orbits, messages);
     std::optional<PreciseTransmitters> transmitters;
     if (orbits.precise) transmitters.emplace(*orbits.precise, options.nav.empty() ? nullptr : orbits.broadcast.get());
@@ -229,7 +285,7 @@ int solve_file(const SolveOptions& options) {
     auto out =
         options.out.empty() || options.out == "-" ? OutputFile::standard_output() : OutputFile::create(options.out);
     if (!out) return messages.error(out.error());
-    const SolvedCounts counts = solve_epochs(*file, engine, options, *orbits.broadcast, *out);
+    const SolvedCounts counts = solve_epochs(*file, engine, *base, options, *out);
     out->flush();
     if (out->failure()) return messages.error(*out->failure());
     messages.info(fmt::format("{} epochs, {} with a fix", counts.epochs, counts.fixes));
@@ -248,6 +304,15 @@ Action add_solve_command(CLI::App& app) {
         ->required();
     command->add_option("--nav", options->nav, "RINEX navigation file; repeatable")->allow_extra_args(false);
     command->add_option("--sp3", options->sp3, "Precise orbits and clocks in place of the broadcast ones");
+    auto* base = command->add_option("--base", options->base,
+                                     "RINEX observation file of a reference station: differential and RTK solutions");
+    command
+        ->add_option(
+            "--base-position", options->base_position,
+            "Where its antenna stands: latitude, longitude (degrees), height above the ellipsoid (m); default: "
+            "what its file says")
+        ->expected(3)
+        ->needs(base);
     command->add_option("--out", options->out, "Where the fixes go, as CSV; default and -: standard output");
     command->add_option("--systems", options->systems, "Only these: gps galileo beidou glonass qzss sbas navic")
         ->delimiter(',')

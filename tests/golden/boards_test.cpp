@@ -118,7 +118,7 @@ Epoch golden_epoch(GpsTime time, int index) {
     receive_messages(epoch);
     epoch.front_end.antenna = AntennaStatus::ok;
     if (index == 2) epoch.front_end.interference = Decibels(12);
-    epoch.relative = RelativePosition{1.25, -0.5, 0.125, Metres(0.015625)};
+    epoch.relative = RelativePosition{1.25, -0.5, 0.125, Metres(0.015625), true, true, 0, Metres(0.03125)};
     return epoch;
 }
 

@@ -112,12 +112,14 @@ struct PowerAbility {
     Seconds download{30};             ///< of ephemerides, every half hour
 };
 
-/// What becomes of the corrections of a base station (RECEIVER.md 4.12).
+/// What becomes of the corrections of a base station. How soon carrier phases are solved is up to the data; of sensor
+/// models, which measure none, the two times tell it.
 struct CorrectionAbility {
     bool rtk = false;         ///< resolves carrier phases; without, corrections make a differential solution
-    Seconds float_after{5};   ///< from the first complete set
+    Seconds float_after{5};   ///< of a sensor model, from the first complete set
     Seconds fixed_after{15};  ///< the same
-    Seconds fixed_held{15};   ///< without new corrections, until the solution is float again
+    Seconds fixed_held{15};   ///< age of the corrections until the solution is float again
+    Seconds float_held{30};   ///< and until it is differential
 };
 
 /// Where units of one model differ, or no document says what it does: each a key of the board file.

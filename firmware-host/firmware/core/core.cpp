@@ -120,7 +120,7 @@ bool Receiver::Core::receive(PortUnit& unit, const StreamPiece& piece, GpsTime n
     if (sleep_.is_off() || now < deaf_until_) return false;
     if (!accepts(unit.id, piece.kind)) return true;
     if (piece.kind == StreamKind::rtcm3)
-        report_corrections(corrections_.take(piece.bytes, now, parts_.config().corrections), now);
+        report_corrections(corrections_.take(piece.bytes, now, tracker_.state().epoch.fix.leap_seconds), now);
     else
         carry_out(
             unit,
@@ -193,7 +193,8 @@ void Receiver::Core::reply(PortUnit& unit, CommandOutcome& outcome, GpsTime now)
 }
 
 const ReceiverSettings& Receiver::Core::settings_at(GpsTime epoch) {
-    settings_.corrections = parts_.maker->allowed(corrections_.status(epoch, parts_.config().corrections).state);
+    settings_.corrections = corrections_.usable(epoch, parts_.config().corrections);
+    settings_.corrections.at_most = parts_.maker->allowed(settings_.corrections.at_most);
     return settings_;
 }
 
@@ -206,8 +207,7 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     CorrectionStatus corrections = corrections_.status(time, config.corrections);
     corrections.come = corrections.state != CorrectionState::none;
     corrections.state = parts_.maker->allowed(corrections.state);
-    const CorrectionState used = solved_with(epoch, settings_.corrections, corrections.state);
-    settings_.corrections = corrections.state;
+    const CorrectionState used = solved_with(epoch, settings_.corrections.at_most, corrections.state);
     const auto state = std::make_shared<NavigationState>(tracker_.update(epoch, config, corrections));
     state->corrections.state = in_solution(state->epoch.fix, used);
     state->monitors.jamming_hidden = parts_.faults.jamming_hidden;

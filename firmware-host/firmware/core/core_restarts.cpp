@@ -38,7 +38,7 @@ void Receiver::Core::restart_navigation(const Forgotten& forgotten, GpsTime now,
     settings_.start = forgotten.kind();
     ++settings_.restarts;
     corrections_.reset();
-    settings_.corrections = CorrectionState::none;
+    settings_.corrections = {};
     parts_.maker->navigation_restarts(forgotten);
     tracker_.start(now, forgotten);
     power_.restart(!forgotten.ephemerides);

@@ -20,8 +20,8 @@ bool is_observation(int number) {
     return kind && (*kind == 4 || *kind == 5 || *kind == 7);
 }
 
-// What is taken and changes nothing here: antenna and receiver descriptions, GLONASS biases, u-blox's own.
-bool is_description(int number) { return number == 1007 || number == 1033 || number == 1230 || number == 4072; }
+// What is taken and changes nothing here: antenna and receiver descriptions, u-blox's own.
+bool is_description(int number) { return number == 1007 || number == 1008 || number == 1033 || number == 4072; }
 
 // What has become of a frame.
 enum class Use { damaged, not_used, used };
@@ -68,41 +68,35 @@ Position<Ecef> place_of(const Rtcm3Station& station) {
 // Whether a station's messages count now.
 bool CorrectionInput::follow(int station, GpsTime now) {
     if (station_ && station_->id == station) return true;
-    const bool busy = station_ && station_->complete_since && station_->observations &&
-                      difference(now, *station_->observations) <= silence_before_another;
-    if (busy) return false;
-    station_ = Station{};
-    station_->id = station;
-    return true;
+    const bool busy = station_ && station_->complete_since && station_->heard &&
+                      difference(now, *station_->heard) <= silence_before_another;
+    if (!busy) station_.emplace(station);
+    return !busy;
 }
 
-// Fixed ambiguities outlive a short silence, floating ones a longer one. After one that was too long even for
-// differential corrections everything begins anew.
-void CorrectionInput::take_observations(GpsTime now, const CorrectionLimits& limits) {
-    Station& s = *station_;
-    const Seconds silence = s.observations ? difference(now, *s.observations) : Seconds(0);
-    s.observations = now;
-    if (silence > limits.timeout) {
-        s.complete_since.reset();
-        s.resumed.reset();
-    } else if (silence > ability_.fixed_held) {
-        s.resumed = now;
-    }
-}
-
-CorrectionAnswer CorrectionInput::take(ByteSpan frame, GpsTime now, const CorrectionLimits& limits) {
+CorrectionAnswer CorrectionInput::take(ByteSpan frame, GpsTime now, int leap_seconds) {
     const auto message = parse_rtcm3(frame);
     if (!message) return answer_of({}, Use::not_used, false);
     const auto position = decode_station(*message);
     const bool observations = is_observation(message->number);
-    if (!position && !observations) {
+    const bool biases = decode_glonass_biases(*message).has_value();
+    if (!position && !observations && !biases) {
         const bool known = is_description(message->number);
         return answer_of(*message, known ? Use::used : Use::not_used, known);
     }
     if (!message->station || !follow(*message->station, now)) return answer_of(*message, Use::not_used);
-    if (position) station_->position = place_of(*position);
-    if (observations) take_observations(now, limits);
-    if (station_->position && station_->observations && !station_->complete_since) station_->complete_since = now;
+    Station& s = *station_;
+    if (biases) s.data.take_glonass_biases();
+    if (position) {
+        s.data.take_position(*position);
+        s.position = place_of(*position);
+    }
+    if (observations) {
+        if (s.heard && difference(now, *s.heard) > ability_.fixed_held) s.complete_since.reset();
+        s.heard = now;
+        if (const auto decoded = decode_msm(*message)) s.data.take_observations(*decoded, now, leap_seconds);
+    }
+    if (s.position && s.heard && !s.complete_since) s.complete_since = now;
     return answer_of(*message, Use::used);
 }
 
@@ -110,25 +104,36 @@ CorrectionAnswer CorrectionInput::answer_to_damaged() { return answer_of({}, Use
 
 CorrectionStatus CorrectionInput::status(GpsTime now, const CorrectionLimits& limits) const {
     CorrectionStatus status;
-    if (!station_ || !station_->observations) return status;
+    if (!station_ || !station_->heard) return status;
     const Station& s = *station_;
-    const Seconds age = std::max(difference(now, *s.observations), Seconds(0));
+    // Of data the age, of messages that hold none the time since they came.
+    const auto& data = s.data.station();
+    const Seconds age = std::max(difference(now, data ? data->epoch.time : *s.heard), Seconds(0));
     status.age = age;
     status.station = s.id;
     status.base = s.position;
     if (!s.complete_since || now < *s.complete_since || age > limits.timeout) return status;
 
     status.state = CorrectionState::differential;
-    if (!ability_.rtk) return status;
-    const GpsTime begun = s.resumed && *s.resumed > *s.complete_since ? *s.resumed : *s.complete_since;
-    const bool resumed = begun != *s.complete_since;
-    const Seconds converged = difference(now, begun);
-    if (!resumed && converged < ability_.float_after) return status;
+    const Seconds converged = difference(now, *s.complete_since);
+    if (!ability_.rtk || converged < ability_.float_after) return status;
     status.state = CorrectionState::rtk_float;
-    const Seconds fixing = resumed ? ability_.fixed_after - ability_.float_after : ability_.fixed_after;
-    if (converged >= fixing && age <= ability_.fixed_held && !limits.float_only)
+    if (converged >= ability_.fixed_after && age <= ability_.fixed_held && !limits.float_only)
         status.state = CorrectionState::rtk_fixed;
     return status;
+}
+
+Corrections CorrectionInput::usable(GpsTime now, const CorrectionLimits& limits) const {
+    Corrections corrections;
+    if (!station_ || !station_->data.station() || now < station_->data.station()->epoch.time) return corrections;
+    corrections.reference = station_->data.station();
+    corrections.at_most = !ability_.rtk       ? CorrectionState::differential
+                          : limits.float_only ? CorrectionState::rtk_float
+                                              : CorrectionState::rtk_fixed;
+    corrections.differential_timeout = limits.timeout;
+    corrections.float_timeout = std::min(ability_.float_held, limits.timeout);
+    corrections.fixed_timeout = std::min(ability_.fixed_held, limits.timeout);
+    return corrections;
 }
 
 }  // namespace skyloop::firmware

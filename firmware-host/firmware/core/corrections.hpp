@@ -9,6 +9,8 @@
 #include "base/time/gps_time.hpp"
 #include "firmware/core/board_profile.hpp"
 #include "firmware/core/navigation_state.hpp"
+#include "firmware/core/reference_data.hpp"
+#include "world/flow/reference_station.hpp"
 
 namespace skyloop::firmware {
 
@@ -18,33 +20,35 @@ struct CorrectionAnswer {
     Bytes cor;   ///< RXM-COR
 };
 
-/// From RTCM frames to the state of the corrected solution: differential at the first epoch after the first complete
-/// set (observations and a station's position, same station), float and fixed after times of their own, back again with
-/// age (RECEIVER.md 4.12). After a silence beyond the time-out it begins anew, with the position that is known. One
-/// station is followed; another one takes its place when it has been silent for ten seconds or was never complete.
-/// State: what came when.
+/// From RTCM frames to what the receiver may do with them. One station is followed; another one takes its place when it
+/// has been silent for ten seconds or was never complete: observations and a position of the same station.
+/// State: what came when, and the station's data.
 class CorrectionInput {
 public:
     explicit CorrectionInput(const CorrectionAbility& ability = {}) : ability_(ability) {}
 
     /// One frame whose CRC held. Used are observations and positions of the station that is followed, GLONASS biases
-    /// and descriptions.
-    CorrectionAnswer take(ByteSpan frame, GpsTime now, const CorrectionLimits& limits = {});
+    /// and descriptions. @param leap_seconds GPST − UTC, for the times of GLONASS
+    CorrectionAnswer take(ByteSpan frame, GpsTime now, int leap_seconds = 18);
     /// What is told of a frame whose CRC did not hold: what it was is not known.
     [[nodiscard]] static CorrectionAnswer answer_to_damaged();
-    /// What a solution at `now` can be.
+    /// What came in, and what it would make of a solution that measures nothing: differential at once, float and fixed
+    /// after times of the board's own, and back again with age.
     [[nodiscard]] CorrectionStatus status(GpsTime now, const CorrectionLimits& limits) const;
+    /// What a receiver that measures gets to solve with.
+    [[nodiscard]] Corrections usable(GpsTime now, const CorrectionLimits& limits) const;
     void reset() { *this = CorrectionInput(ability_); }
 
 private:
     struct Station {
-        int id = 0;
-        std::optional<GpsTime> observations, complete_since;
+        explicit Station(int number) : id(number), data(number) {}
+        int id;
+        ReferenceData data;
         std::optional<Position<Ecef>> position;
-        std::optional<GpsTime> resumed;  // after a silence in which fixed ambiguities were lost
+        std::optional<GpsTime> heard;           // observations, last
+        std::optional<GpsTime> complete_since;  // position and observations
     };
     bool follow(int station, GpsTime now);
-    void take_observations(GpsTime now, const CorrectionLimits& limits);
 
     CorrectionAbility ability_;
     std::optional<Station> station_;

@@ -70,13 +70,12 @@ SbfAttCovEuler sbf_attitude_covariance(const NavigationState& state) {
     auto block = sbf_block<SbfAttCovEuler>(state);
     if (!pair_attitude(state)) return block;
     const RelativePosition& r = *state.epoch.relative;
-    const double sigma = r.deviation.value();
-    const auto square_deg = [&](double length) {
-        return static_cast<float>(std::pow(sigma / length * sbf_degrees, 2));
+    const auto square_deg = [&](Metres sigma, double length) {
+        return static_cast<float>(std::pow(sigma.value() / length * sbf_degrees, 2));
     };
     block.error = 0;
-    block.heading = square_deg(std::hypot(r.north_m, r.east_m));
-    block.pitch = square_deg(std::hypot(r.north_m, r.east_m, r.down_m));
+    block.heading = square_deg(r.deviation, std::hypot(r.north_m, r.east_m));
+    block.pitch = square_deg(r.down_deviation, std::hypot(r.north_m, r.east_m, r.down_m));
     block.heading_pitch = 0;
     return block;
 }

@@ -43,7 +43,6 @@ public:
         follow_restarts(settings);
         Measurement result;
         ChannelEpoch epoch = begin_epoch(arrivals, time, result);
-        epoch.corrected = settings.corrections != CorrectionState::none;
         result.observations.signals.reserve(channels_.size());
         result.terms.signals.reserve(channels_.size());
         for (const Arrival& arrival : arrivals.satellites) {

@@ -41,7 +41,7 @@ public:
     /// The phase error is the phase_noise of the terms and `phase_ratio` times their multipath. A change between line
     /// of sight and reflection breaks the count of cycles, and so does a jump of the range that its rate does not tell.
     /// With a hot start every signal above its threshold is there at the first epoch. Terms that are switched off leave
-    /// exactly 0. With corrections in the settings every measurement has those that a base station nearby would give.
+    /// exactly 0.
     /// @param arrivals ascending by satellite, with C/N0; a satellite without paths or C/N0 does not arrive
     /// @param time true instant of the measurement
     Measurement measure(const Arrivals& arrivals, GpsTime time, const ReceiverSettings& settings);

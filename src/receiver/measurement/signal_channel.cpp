@@ -213,19 +213,6 @@ void SignalChannel::follow_cycles(const ChannelInput& input, const ChannelEpoch&
     if (slipped_) counting_since_ = epoch.now;
 }
 
-// The base is taken to stand so near that it sees the same errors, and to be so good that its own do not count. Integer
-// ambiguities are those of the receiver's own count of cycles; the phase knows no group delay, but the clocks of the
-// records are those of the code.
-DifferentialCorrection SignalChannel::correction(const ChannelInput& input, Metres iono) const {
-    const Metres common = input.arrival.signal_in_space_error + input.arrival.tropo_delay;
-    DifferentialCorrection result{common + iono, std::nullopt};
-    if (!lock_.phase_locked()) return result;
-    const double wavelength = speed_of_light / input.signal.carrier.value();
-    result.phase = common - iono + Metres(wavelength * count_.cycles()) -
-                   Metres(speed_of_light * input.signal.group_delay.value());
-    return result;
-}
-
 Observation SignalChannel::observation(const ChannelInput& input, const ChannelEpoch& epoch) const {
     const Arrival& arrival = input.arrival;
     const MeasurementParameters& parameters = epoch.parameters;
@@ -253,7 +240,6 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.half_cycle_resolved = lock_.half_cycle_resolved();
     result.called_unhealthy = arrival.called_unhealthy;
     if (arrival.echoes_known) result.correlation_distortion = std::abs(echoes_.distortion);
-    if (epoch.corrected) result.correction = correction(input, Metres(iono));
     result.augmentation = augmentation_of(arrival, Metres(iono));
     if (!lock_.phase_locked()) return result;
     const double carrier_path = path - iono + terms_.phase_multipath.value() + terms_.phase_noise.value();

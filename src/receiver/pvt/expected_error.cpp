@@ -123,6 +123,16 @@ Angle told_course_accuracy(MetresPerSecond speed, MetresPerSecond speed_accuracy
     return Angle::radians(std::min(turn, std::numbers::pi));
 }
 
+ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, Metres floor, const ReferenceSpacing& reference,
+                           const CarrierParameters& parameters) {
+    const double apart = parameters.told_per_length * reference.length.value();
+    const double old = parameters.per_age.value() * reference.age.value();
+    const auto told = [&](double variance) {
+        return Metres(std::sqrt(variance + floor.value() * floor.value() + apart * apart + old * old));
+    };
+    return {told(covariance(0, 0) + covariance(1, 1)), told(covariance(2, 2))};
+}
+
 ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,
                            const DifferentialParameters& parameters) {
     if (kind == DifferentialKind::rtk_float || kind == DifferentialKind::rtk_fixed) {

@@ -93,6 +93,14 @@ Angle told_course_accuracy(MetresPerSecond speed, MetresPerSecond speed_accuracy
 struct ToldAccuracy {
     Metres horizontal, vertical;
 };
+/// How far a reference station's data are from what they correct.
+struct ReferenceSpacing {
+    Metres length;
+    Seconds age;
+};
+/// Of a solution against a reference station: its noise, a floor, and what grows with distance and age.
+ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, Metres floor, const ReferenceSpacing& reference,
+                           const CarrierParameters& parameters);
 /// Of solutions by carrier phases the accuracy of a good sky, the more in a poor one.
 /// @param covariance of the position, east, north, up, m²
 ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,

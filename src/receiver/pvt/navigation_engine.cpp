@@ -1,24 +1,13 @@
 #include "receiver/pvt/navigation_engine.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "base/geo/local_frame.hpp"
-#include "receiver/pvt/equation_maker.hpp"
-#include "receiver/pvt/expected_error.hpp"
-#include "receiver/pvt/integrity.hpp"
-#include "receiver/pvt/motion_check.hpp"
-#include "receiver/pvt/observation_equations.hpp"
-#include "receiver/pvt/position_filter.hpp"
-#include "receiver/pvt/satellite_report.hpp"
-#include "receiver/pvt/single_point.hpp"
+#include "detail/navigation_engine_state.hpp"
 #include "world/gnss/constants.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
-
-constexpr double coasting_acceleration = 1;  // m/s², by which a lost fix may have left its course
 
 // Two carriers are of use even where no group delay is broadcast.
 UntoldDelay untold_delay(const CorrectionParameters& parameters) {
@@ -28,93 +17,26 @@ UntoldDelay untold_delay(const CorrectionParameters& parameters) {
 
 GpsTime whole_millisecond(GpsTime time) { return std::chrono::round<std::chrono::milliseconds>(time); }
 
-// What was made of one epoch before the filter.
-struct EpochSolution : EpochEquations {
-    std::optional<SinglePoint> point;
-    std::optional<SinglePointVelocity> velocity;
-    ResidualTest test;
-    bool time_only = false;
-};
-
 }  // namespace
 
-class NavigationEngine::State {
-public:
-    State(const NavigationParameters& parameters, const NavigationKnowledge& knowledge)
-        : parameters_(parameters),
-          knowledge_(knowledge),
-          received_(*knowledge.broadcast, parameters),
-          transmitters_(received_, untold_delay(parameters.corrections)),
-          corrections_(parameters.corrections,
-                       {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
-          air_({IonosphereCorrection::klobuchar, TroposphereCorrection::niell, 0.5, true, false},
-               {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
-          monitor_(parameters.integrity),
-          smoother_(parameters.filter.code_smoothing),
-          filter_(parameters.filter),
-          report_(*knowledge.broadcast, received_),
-          maker_(parameters),
-          noise_(parameters.filter.kind),
-          position_(knowledge.last_place) {}
-
-    Fix solve(const Observations& observations, const ReceiverSettings& settings);
-    [[nodiscard]] bool velocity_known() const { return velocity_known_; }
-
-private:
-    // Of the last fix in three dimensions.
-    struct LastHeight {
-        HeldHeight then;
-        GpsTime time;
-        MetresPerSecond rate;  // at which it may have changed since
-    };
-
-    void begin(const ReceiverSettings& settings, GpsTime time);
-    TransmitterSource& transmitters() { return knowledge_.transmitters ? *knowledge_.transmitters : transmitters_; }
-    [[nodiscard]] GpsTime presumed_time(const Observations& observations) const;
-    EpochSolution solve_epoch(const Observations& observations, const ReceiverSettings& settings);
-    [[nodiscard]] std::optional<HeldHeight> held_height(const ReceiverSettings& settings) const;
-    void solve_position(const ReceiverSettings& settings, EpochSolution& epoch);
-    void solve_doppler(EpochSolution& epoch) const;
-    [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings);
-    [[nodiscard]] FixType type_of(const EpochSolution& epoch) const;
-    void fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix);
-    void fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings, Fix& fix);
-    Metres fill_accuracy(const EpochSolution& epoch, Fix& fix);
-    void fill_coasting(const ReceiverSettings& settings, Fix& fix);
-    void begin_regime(CorrectionState state);
-    Observations prepared(const Observations& observations, const ReceiverSettings& settings);
-    [[nodiscard]] DifferentialKind differential_kind() const;
-    [[nodiscard]] Metres reported_undulation(const Geodetic& at) const {
-        const Geoid* geoid = knowledge_.geoid;
-        return geoid ? geoid->undulation(at.latitude, at.longitude, knowledge_.geoid_step_deg) : Metres(0);
-    }
-
-    NavigationParameters parameters_;
-    NavigationKnowledge knowledge_;
-    ReceivedRecords received_;
-    BroadcastTransmitters transmitters_;
-    RangeCorrections corrections_;
-    RangeCorrections air_;  // as far as the receiver can tell, corrected or not
-    IntegrityMonitor monitor_;
-    CodeSmoother smoother_;
-    PositionFilter filter_;
-    SatelliteReport report_;
-    EquationMaker maker_;
-    MotionCheck motion_;
-    NoiseScale noise_;
-
-    std::optional<int> restarts_;
-    GpsTime time_;                           // true, as well as the receiver can tell
-    std::optional<GpsTime> clock_known_at_;  // receiver's reading at the last solution
-    Metres clock_bias_;
-    MetresPerSecond clock_drift_;
-    std::optional<Position<Ecef>> position_;  // the last one
-    std::optional<LastHeight> height_;
-    Angle course_;
-    bool velocity_known_ = false;                        // of the last solution
-    CorrectionState corrected_ = CorrectionState::none;  // by a base station, this epoch
-    Fix last_;
-};
+NavigationEngine::State::State(const NavigationParameters& parameters, const NavigationKnowledge& knowledge)
+    : parameters_(parameters),
+      knowledge_(knowledge),
+      received_(*knowledge.broadcast, parameters),
+      transmitters_(received_, untold_delay(parameters.corrections)),
+      corrections_(parameters.corrections,
+                   {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
+      air_({IonosphereCorrection::klobuchar, TroposphereCorrection::niell, 0.5, true, false},
+           {knowledge.broadcast->ionosphere(), knowledge.geoid, knowledge.leap_seconds}),
+      monitor_(parameters.integrity),
+      smoother_(parameters.filter.code_smoothing),
+      filter_(parameters.filter),
+      report_(*knowledge.broadcast, received_),
+      maker_(parameters),
+      noise_(parameters.filter.kind),
+      baseline_(parameters.carrier, air_),
+      pair_(parameters.carrier, air_),
+      position_(knowledge.last_place) {}
 
 // A restart, and the very first start.
 void NavigationEngine::State::begin(const ReceiverSettings& settings, GpsTime time) {
@@ -125,6 +47,8 @@ void NavigationEngine::State::begin(const ReceiverSettings& settings, GpsTime ti
     smoother_.reset();
     report_.reset();
     maker_.reset();
+    baseline_.reset();
+    pair_.reset();
     motion_.reset();
     noise_.reset();
     clock_known_at_.reset();
@@ -204,15 +128,17 @@ void NavigationEngine::State::solve_doppler(EpochSolution& epoch) const {
 EpochSolution NavigationEngine::State::solve_epoch(const Observations& observations, const ReceiverSettings& settings) {
     EpochSolution epoch;
     time_ = presumed_time(observations);
+    corrected_ = CorrectionState::none;
     // Records change at whole epochs: the second look is for a clock that was farther off than expected.
     for (int look = 0; look < 2; ++look) {
         received_.listen(observations, time_);
         epoch = EpochSolution();
         if (!received_.time_known()) return epoch;
         transmitters_.choose_records_at(time_);
-        const bool corrected = corrected_ != CorrectionState::none;
+        const Observations& used = corrected(observations, settings.corrections);
+        const bool with_reference = corrected_ != CorrectionState::none;
         const auto place = position_ ? std::optional(to_geodetic(*position_)) : std::nullopt;
-        static_cast<EpochEquations&>(epoch) = maker_.make(transmitters(), observations, settings, place, corrected);
+        static_cast<EpochEquations&>(epoch) = maker_.make(transmitters(), used, settings, place, with_reference);
         solve_position(settings, epoch);
         if (!epoch.point) return epoch;
         if (keep_strongest(*epoch.point, settings.most_satellites, epoch.equations, epoch.primaries)) {
@@ -226,141 +152,61 @@ EpochSolution NavigationEngine::State::solve_epoch(const Observations& observati
         time_ = solved;
     }
     solve_doppler(epoch);
+    solve_baseline(epoch, observations, settings.corrections);
     return epoch;
 }
 
-bool NavigationEngine::State::plausible(const FilteredPosition& filtered, const ReceiverSettings& settings) {
-    if (parameters_.filter.kind == FilterKind::none) return true;
-    const Geodetic place = to_geodetic(filtered.position);
-    const Metres height = above_sea_level(place.height, reported_undulation(place)).above_sea_level;
-    return motion_.passes(motion_limits(settings), time_, height, LocalFrame(place).to_enu(filtered.velocity).vector());
+// As measured, or with what a reference station tells taken off.
+const Observations& NavigationEngine::State::corrected(const Observations& observations,
+                                                       const Corrections& corrections) {
+    constexpr int enough = 4;  // satellites for a position
+    corrected_ = CorrectionState::none;
+    reference_.reset();
+    if (corrections.at_most == CorrectionState::none || !corrections.reference ||
+        reference_age(*corrections.reference) > corrections.differential_timeout)
+        return observations;
+    corrected_observations_ = observations;
+    if (correct_codes(corrected_observations_, *corrections.reference, transmitters()) < enough) return observations;
+    corrected_ = CorrectionState::differential;
+    reference_ = ReferenceSpacing{Metres(0), reference_age(*corrections.reference)};
+    return corrected_observations_;
 }
 
-void NavigationEngine::State::fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings,
-                                          Fix& fix) {
-    fix.position = to_geodetic(filtered.position);
-    fix.geoid_undulation = reported_undulation(fix.position);
-    const Eigen::Vector3d v = LocalFrame(fix.position).to_enu(filtered.velocity).vector();
-    fix.velocity = {v.y(), v.x(), -v.z()};
-    fix.speed = MetresPerSecond(std::hypot(v.x(), v.y()));
-    if (fix.speed >= settings.course_held_below) course_ = course_of(fix.velocity);
-    fix.course = course_;
-}
-
-// Returns 1 σ of the height, whatever the receiver reports.
-Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& fix) {
-    const double scale = parameters_.accuracy.position_scale * noise_.of(*epoch.point, epoch.test, time_);
-    const SinglePoint point = with_noise(*epoch.point, scale);
-    const bool left = corrected_ == CorrectionState::none && leaves_delays(parameters_);
-    const bool augmented = left && differential_kind() == DifferentialKind::sbas;
-    const DifferentialKind kind = augmented ? DifferentialKind::none : differential_kind();
-    const ExpectedError expected =
-        left ? expected_error_left(point, parameters_, air_.at(to_geodetic(point.position), time_))
-             : expected_error(point, parameters_.accuracy);
-    fix.time_accuracy = Metres(std::sqrt(expected.clock));
-    if (epoch.time_only) return Metres(0);
-    const Eigen::Matrix3d q = in_enu(LocalFrame(fix.position), expected.position);
-    const ToldAccuracy told = told_accuracy(q, fix.dop, kind, parameters_.differential);
-    fix.horizontal_accuracy = told.horizontal;
-    fix.vertical_accuracy = told.vertical;
-    fix.speed_accuracy = told_speed_accuracy(epoch.velocity, parameters_.accuracy);
-    fix.course_accuracy = told_course_accuracy(fix.speed, fix.speed_accuracy);
-    fix.correlation = error_correlation(expected, epoch.velocity, fix.position);
-    return Metres(std::sqrt(q(2, 2)));
-}
-
-FixType NavigationEngine::State::type_of(const EpochSolution& epoch) const {
-    if (epoch.point->height_held) return FixType::fix_2d;
-    static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
-    const FixType type = differential[static_cast<std::size_t>(differential_kind())];
-    constexpr int enough = 4;  // augmented ranges for a position of their own
-    int augmented = 0;
+void NavigationEngine::State::solve_baseline(const EpochSolution& epoch, const Observations& observations,
+                                             const Corrections& corrections) {
+    carrier_.reset();
+    usable_.clear();
+    if (!epoch.point) return;
     for (std::size_t i = 0; i < epoch.equations.size(); ++i)
-        augmented += epoch.equations[i].augmented && epoch.point->ranges[i].used ? 1 : 0;
-    return type == FixType::fix_3d && augmented >= enough ? FixType::dgnss : type;
-}
-
-void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix) {
-    const SinglePoint& point = *epoch.point;
-    fix.clock_bias = point.clock();
-    if (epoch.velocity) fix.clock_drift = epoch.velocity->clock_drift;
-    fix.dop = point.dop;
-    if (epoch.time_only) {
-        fix.type = FixType::time_only;
-        fill_accuracy(epoch, fix);
+        if (epoch.point->ranges[i].used) usable_.insert(epoch.equations[i].satellite);
+    if (!reference_) return;
+    reference_->length = (epoch.point->position - *corrections.reference->position).length();
+    if (corrections.at_most < CorrectionState::rtk_float || epoch.time_only || epoch.point->height_held ||
+        reference_age(*corrections.reference) > corrections.float_timeout)
         return;
-    }
-    FilteredPosition filtered;
-    filtered.position = point.position;
-    if (epoch.velocity) filtered.velocity = epoch.velocity->velocity;
-    if (parameters_.filter.kind == FilterKind::smoothed) {
-        const Metres deviation(std::max(1.0, noise_.average()) * std::sqrt(point.covariance.trace()));
-        PositionInput input{time_, point.position, deviation, std::nullopt, {}};
-        if (epoch.velocity) {
-            input.velocity = epoch.velocity->velocity;
-            input.velocity_deviation = MetresPerSecond(std::sqrt(epoch.velocity->covariance.trace()));
-        }
-        // Carrier phases need no filter, which would only add the noise of the velocity.
-        if (differential_kind() >= DifferentialKind::rtk_float) filter_.reset();
-        filtered = filter_.update(input, settings);
-    }
-    if (!plausible(filtered, settings)) {
-        filter_.reset();
-        fix.withheld = true;
-        return;
-    }
-    fill_motion(filtered, settings, fix);
-    fix.type = type_of(epoch);
-    const Metres height_deviation = fill_accuracy(epoch, fix);
-    if (point.height_held) return;
-    const MetresPerSecond rate(std::hypot(fix.velocity.down, fix.speed_accuracy.value()));
-    height_ = LastHeight{{to_geodetic(point.position).height, height_deviation}, time_, rate};
+    const bool may_fix = corrections.at_most == CorrectionState::rtk_fixed &&
+                         reference_age(*corrections.reference) <= corrections.fixed_timeout;
+    carrier_ = baseline_.solve({time_, observations, *corrections.reference, epoch.point->position, usable_, may_fix},
+                               transmitters());
+    if (carrier_) corrected_ = carrier_->fixed ? CorrectionState::rtk_fixed : CorrectionState::rtk_float;
 }
 
-void NavigationEngine::State::fill_coasting(const ReceiverSettings& settings, Fix& fix) {
-    if (parameters_.filter.kind == FilterKind::none || !last_.has_position()) return;
-    const std::optional<FilteredPosition> carried = filter_.coast(time_);
-    if (!carried) return;
-    Fix coasting = last_;
-    coasting.time = fix.time;
-    coasting.leap_seconds = fix.leap_seconds;
-    coasting.satellites.clear();
-    coasting.type = FixType::dead_reckoning;
-    fill_motion(*carried, settings, coasting);
-    const double t = carried->coasted.value();
-    const double left = last_.speed_accuracy.value() * t + coasting_acceleration * t * t / 2;
-    coasting.horizontal_accuracy = Metres(std::hypot(last_.horizontal_accuracy.value(), left));
-    coasting.vertical_accuracy = Metres(std::hypot(last_.vertical_accuracy.value(), left));
-    coasting.speed_accuracy = last_.speed_accuracy + MetresPerSecond(coasting_acceleration * t);
-    coasting.clock_bias = clock_bias_ + Metres(clock_drift_.value() * t);
-    fix = std::move(coasting);
-}
-
-// Old solutions with errors of another size must not stay in the filter; carrier phases need none.
-void NavigationEngine::State::begin_regime(CorrectionState state) {
-    if (state != corrected_ || state >= CorrectionState::rtk_float) filter_.reset();
-    corrected_ = state;
-}
-
-Observations NavigationEngine::State::prepared(const Observations& observations, const ReceiverSettings& settings) {
-    Observations result = observations;
-    if (parameters_.filter.code_smoothing > Seconds(0)) smoother_.smooth(result);
-    begin_regime(correct(result, settings.corrections));
-    return result;
-}
-
-DifferentialKind NavigationEngine::State::differential_kind() const {
-    return corrected_ == CorrectionState::none ? parameters_.differential.kind
-                                               : static_cast<DifferentialKind>(corrected_);
+std::optional<RelativePosition> NavigationEngine::State::relate(const Observations& observations,
+                                                                const ReferenceStation& base) {
+    if (!base.position || !position_ || usable_.empty()) return std::nullopt;
+    const auto solution = pair_.solve({time_, observations, base, *position_, usable_, true}, transmitters());
+    return solution ? std::optional(relative_position(*solution, base)) : std::nullopt;
 }
 
 Fix NavigationEngine::State::solve(const Observations& observations, const ReceiverSettings& settings) {
     begin(settings, observations.receive_time);
-    const bool changed =
-        parameters_.filter.code_smoothing > Seconds(0) || settings.corrections != CorrectionState::none;
-    const Observations own = changed ? prepared(observations, settings) : Observations();
-    if (!changed) begin_regime(CorrectionState::none);
-    const EpochSolution epoch = solve_epoch(changed ? own : observations, settings);
+    const bool smooths = parameters_.filter.code_smoothing > Seconds(0);
+    Observations smoothed = smooths ? observations : Observations();
+    smoother_.smooth(smoothed);
+    const CorrectionState before = corrected_;
+    const EpochSolution epoch = solve_epoch(smooths ? smoothed : observations, settings);
+    // Old solutions with errors of another size must not stay in the filter.
+    if (corrected_ != before) filter_.reset();
     Fix fix;
     fix.time = time_;
     fix.leap_seconds = knowledge_.leap_seconds.offset(time_);
@@ -396,5 +242,10 @@ Fix NavigationEngine::solve(const Observations& observations, const ReceiverSett
     return state_->solve(observations, settings);
 }
 bool NavigationEngine::velocity_known() const { return state_->velocity_known(); }
+std::optional<RelativePosition> NavigationEngine::relate(const Observations& observations,
+                                                         const ReferenceStation& base) {
+    return state_->relate(observations, base);
+}
+const std::optional<BaselineSolution>& NavigationEngine::baseline() const { return state_->baseline(); }
 
 }  // namespace skyloop::inline receiver

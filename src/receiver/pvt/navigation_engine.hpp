@@ -7,6 +7,7 @@
 #include "base/geo/geodetic.hpp"
 #include "base/geo/geoid.hpp"
 #include "base/time/utc_time.hpp"
+#include "receiver/pvt/baseline_solver.hpp"
 #include "receiver/pvt/navigation_parameters.hpp"
 #include "receiver/pvt/transmitter.hpp"
 #include "world/flow/fix.hpp"
@@ -41,6 +42,11 @@ public:
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
     /// Whether the last fix has a velocity that was measured: without Dopplers it is told as 0.
     [[nodiscard]] bool velocity_known() const;
+    /// The vector from the base of a moving pair at the last epoch, by what both measured.
+    /// @param observations of that epoch @return nothing without a position of both, or too few common signals
+    std::optional<RelativePosition> relate(const Observations& observations, const ReferenceStation& base);
+    /// From the reference station to this receiver at the last epoch, by carrier phases; nothing where there were none.
+    [[nodiscard]] const std::optional<BaselineSolution>& baseline() const;
 
 private:
     class State;

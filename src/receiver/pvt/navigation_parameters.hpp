@@ -102,6 +102,29 @@ struct DifferentialParameters {
     double vertical_proportion = 1.5;  ///< vertical over horizontal, of the two above, up to a VDOP of as much
 };
 
+/// How carrier phases are solved against those of a reference station. Deviations are of one end, 1 σ; what grows with
+/// the baseline is that of differences between both ends.
+struct CarrierParameters {
+    Metres code_floor{0.6}, code_at_zenith{0.8};  ///< of a code: √(floor² + (at_zenith/sin e)²), more below 40 dBHz
+    Metres phase_floor{0.003}, phase_at_zenith{0.003};  ///< the same of a phase
+    Seconds code_memory{100};                           ///< for which errors of a code last
+    MetresPerSecond per_age{0.0015};                    ///< of both, for each second that the reference's data are old
+    double ionosphere_per_length = 1.5e-6;              ///< at L1, slant
+    Metres ionosphere_most{1};
+    Seconds ionosphere_memory{900};
+    double wet_per_length = 1e-6, wet_per_height = 5e-5;  ///< at the zenith
+    Metres wet_most{0.05};
+    Seconds wet_memory{7200};
+    Angle integers_from = Angle::degrees(12);  ///< elevation of satellites whose ambiguities are fixed
+    double least_ratio = 3;                    ///< of the ratio test
+    double least_success = 0.9;                ///< of IntegerCandidates::success
+    Seconds hold_after{5};                     ///< since they were fixed without a break, ambiguities are held
+    Seconds memory{30};                        ///< of an ambiguity whose signal is missed
+    int most_misfits = 3;           ///< epochs in which most phases contradict what is held, until all begins anew
+    double told_per_length = 1e-6;  ///< of the reported accuracies, beside the filter's
+    Metres told_floor{0.005};       ///< the same
+};
+
 /// What the receiver must hear of the satellites' data.
 struct DataParameters {
     DbHz decoding_cn0{25};            ///< from which bits are read
@@ -116,6 +139,7 @@ struct NavigationParameters {
     IntegrityParameters integrity;
     AccuracyParameters accuracy;
     DifferentialParameters differential;
+    CarrierParameters carrier;
     DataParameters data;
     /// Of tracking, until a satellite's record has been received. GPS sends it in 18 s of each 30 s (subframes 1 to 3,
     /// IS-GPS-200 20.3.2 and 20.3.3); of what lies between, this has the first fix when receivers have theirs

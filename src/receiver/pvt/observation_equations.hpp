@@ -1,5 +1,4 @@
 /// Code smoothed by the carrier.
-/// What a receiver makes of the corrections of a base station.
 /// What a receiver makes of the ranges of one satellite.
 #pragma once
 
@@ -36,12 +35,6 @@ private:
     Seconds window_;
     std::map<std::pair<SatelliteId, Signal>, Smoothed> signals_;
 };
-
-/// Takes the corrections off the pseudoranges. With fixed ambiguities the carrier's range stands in their place; with
-/// float ones that range with a share of the code's error, which is what the average of many codes leaves in the
-/// ambiguities. Signals whose phase does not serve lose their pseudorange, as all without a correction.
-/// @return what came out of it: differential, where fewer than five satellites have phases that serve
-CorrectionState correct(Observations& observations, CorrectionState wanted);
 
 /// The equation of a pseudorange, or of the combination of two that the ionosphere does not touch: of frequencies f₁
 /// and f₂, (f₁² P₁ − f₂² P₂)/(f₁² − f₂²) (IS-GPS-200, 20.3.3.3.3.3 without its group delays, which the transmitters

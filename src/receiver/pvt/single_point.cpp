@@ -9,6 +9,7 @@
 #include "detail/dilution.hpp"
 #include "detail/measured_delays.hpp"
 #include "detail/normal_equations.hpp"
+#include "detail/square.hpp"
 #include "world/gnss/orbit.hpp"
 
 namespace skyloop::inline receiver {
@@ -52,8 +53,6 @@ struct RangeWork {
     Metres ionosphere, troposphere;  // taken off
     double ionosphere_variance = 0;  // of what was measured of it
 };
-
-double square(double x) { return x * x; }
 
 // The satellites of one clock.
 struct ClockMean {

@@ -57,7 +57,7 @@ GpsTime Emulator::next_instant(GpsTime end) const {
         if (!parts_.pacer->is_virtual() && !scripted) continue;
         if (const auto input = station.next_input(now_)) next = std::min(next, std::max(now_, *input));
         // Whoever keeps the times of messages, or judges by them, wants them as they leave.
-        if (!scripted && !station.recorder() && !parts_.director.wants_messages()) continue;
+        if (!scripted && !station.recorder() && !parts_.director.wants_messages() && !station.is_overheard()) continue;
         if (const auto output = station.next_output()) next = std::min(next, std::max(now_, *output));
     }
     if (const auto event = parts_.director.next_event()) next = std::min(next, std::max(now_, *event));
@@ -194,6 +194,12 @@ void Emulator::carry_out(const LoopTime& time) {
         dialogues_[i].listen(heard);
         parts_.stations[i].carry_out(time, &dialogues_[i]);
     }
+    std::vector<Bytes> said;
+    for (Station& station : parts_.stations)
+        said.push_back(station.take_overheard());
+    for (Station& station : parts_.stations)
+        if (const auto from = station.corrections_from(); from && !said[*from].empty())
+            station.hear_corrections(said[*from], time.now);
 }
 
 void Emulator::take_in(const LoopTime& time) {

@@ -11,7 +11,7 @@
 
 namespace skyloop::inline run {
 
-/// How well a rover knows its vector to the base.
+/// How well a rover that measures nothing knows its vector to the base.
 struct BaselineAccuracy {
     GaussMarkovParameters fixed{0.005, Seconds(30)};   ///< of each axis, m
     GaussMarkovParameters floating{0.3, Seconds(30)};  ///< of each axis, m, as long as the ambiguities are not whole
@@ -20,9 +20,9 @@ struct BaselineAccuracy {
     Seconds held_without_base{10};                     ///< ambiguities, after the base's last epoch (RECEIVER.md 4.12)
 };
 
-/// Makes the solution of a moving base's rover from the truth and an error: the true vector plus three first-order
-/// Gauss-Markov processes. Numbers: ZED-F9P data sheet, RTK 1 cm + 1 ppm CEP, heading 0.4° at 1 m, which 5 mm each axis
-/// give; times of float and fixed as in RECEIVER.md 4.12.
+/// Keeps the solution of a moving base's rover between epochs of its base. Of sensor models, which measure nothing, it
+/// also makes it: the true vector plus three first-order Gauss-Markov processes. Their numbers: ZED-F9P data sheet, RTK
+/// 1 cm + 1 ppm CEP, heading 0.4° at 1 m, which 5 mm each axis give.
 ///
 /// State: the errors, the base's last epoch, and since when both receivers have had a fix. All numbers are of streams
 /// of their own.
@@ -30,7 +30,10 @@ class MovingBase {
 public:
     explicit MovingBase(std::uint64_t seed, const BaselineAccuracy& accuracy = {});
 
-    /// The vector at one instant; instants come in ascending order. Nothing while one of the two has no fix of its own.
+    /// A vector that was measured, or could not be.
+    void take(const Trace& rover);
+    /// The vector of sensor models at one instant; instants come in ascending order. Nothing while one of the two has
+    /// no fix of its own.
     /// @param base,rover of the same instant
     std::optional<RelativePosition> relate(const Trace& base, const Trace& rover);
     /// An instant at which the base has no epoch, as one that is slower than its rover: the ambiguities of its last one
@@ -45,6 +48,7 @@ private:
     BaselineAccuracy accuracy_;
     std::array<GaussMarkov, 3> fixed_, floating_;  // north, east, down
     std::optional<GpsTime> last_, both_since_;     // the base's last epoch; the first of those that both had a fix at
+    std::optional<bool> measured_fixed_;           // of the last vector that was measured
 };
 
 }  // namespace skyloop::inline run

@@ -270,6 +270,9 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     parts.seed = receiver_seed(scenario.run, index);
     parts.state = std::move(state);
     parts.base = entry.base;
+    parts.corrections_from = entry.corrections_from;
+    parts.overheard = std::ranges::any_of(scenario.receivers,
+                                          [&](const ReceiverEntry& other) { return other.corrections_from == index; });
     if (shared.mode.repeat) {
         auto heard = repeated_input(*shared.mode.repeat, index, wires, parts.receiver.board());
         if (!heard) return fail(heard.error());

@@ -60,6 +60,10 @@ void Station::input(PortId port, ByteSpan bytes, GpsTime now) {
         parts_.receiver.input(port, ByteSpan(&byte, 1), now);
 }
 
+void Station::hear_corrections(ByteSpan bytes, GpsTime now) {
+    input(default_port(parts_.receiver.board()), bytes, now);
+}
+
 bool Station::hear_again(GpsTime now, Dialogue* dialogue) {
     const std::size_t before = heard_again_;
     for (; heard_again_ < parts_.repeated.size() && parts_.repeated[heard_again_].at <= now; ++heard_again_) {
@@ -123,6 +127,10 @@ PortId Station::port_of(std::size_t wire) const {
 void Station::speak(const LoopTime& time, Dialogue* dialogue) {
     const std::vector<firmware::Receiver::Sent> pieces = parts_.receiver.output(time.now);
     const bool at_rest = !parts_.receiver.drained_at().has_value();
+    if (parts_.overheard)
+        for (const firmware::Receiver::Sent& piece : pieces)
+            if (piece.port == default_port(parts_.receiver.board()))
+                overheard_.insert(overheard_.end(), piece.bytes.begin(), piece.bytes.end());
     for (std::size_t i = 0; i < faulty_wires_.size(); ++i) {
         std::vector<firmware::Receiver::Sent> own;
         for (const firmware::Receiver::Sent& piece : pieces) {
@@ -212,10 +220,14 @@ Trace Station::observe() {
 
 void Station::relate(Trace& trace, const Trace* base) {
     if (!parts_.moving_base) return;
-    if (base)
+    if (base && trace.measures) {
+        parts_.simulation.relate(trace, *base);
+        parts_.moving_base->take(trace);
+    } else if (base) {
         trace.epoch.relative = parts_.moving_base->relate(*base, trace);
-    else
+    } else {
         parts_.moving_base->hold(trace);
+    }
     // The vector is exact, the place is only as good as the base's own: its accuracies stay.
     trace.epoch.fix.type = parts_.moving_base->fix_type().value_or(trace.epoch.fix.type);
 }

@@ -56,10 +56,12 @@ public:
         std::optional<StateFile> state{};
         std::optional<std::size_t> base{};  ///< the station that carries the base antenna of the pair
         std::optional<MovingBase> moving_base{};
-        std::uint64_t seed = 1;                ///< of its own random numbers
-        std::vector<HeardBytes> repeated{};    ///< input of an earlier run, to be heard again
-        std::set<std::size_t> mute_wires{};    ///< whose clients listen only: what they write is in `repeated`
-        std::unique_ptr<PowerSwitch> power{};  ///< of a real device, switched by power_cut; null: none
+        std::optional<std::size_t> corrections_from{};  ///< the receiver whose bytes this one takes as corrections
+        bool overheard = false;                         ///< there is one that takes those of this receiver
+        std::uint64_t seed = 1;                         ///< of its own random numbers
+        std::vector<HeardBytes> repeated{};             ///< input of an earlier run, to be heard again
+        std::set<std::size_t> mute_wires{};             ///< whose clients listen only: what they write is in `repeated`
+        std::unique_ptr<PowerSwitch> power{};           ///< of a real device, switched by power_cut; null: none
     };
     explicit Station(Parts parts);
 
@@ -73,6 +75,10 @@ public:
     /// faults and what a client has configured.
     /// @param dialogue is shown the messages of both
     void take_in(const LoopTime& time, Dialogue* dialogue = nullptr);
+    /// What has left since the last call by the port that others take corrections from.
+    [[nodiscard]] Bytes take_overheard() { return std::exchange(overheard_, {}); }
+    /// Corrections of another receiver arrive.
+    void hear_corrections(ByteSpan bytes, GpsTime now);
     /// What is true, measured and solved at the epoch that is due.
     Trace observe();
     /// Adds the vector from the base antenna, and the type of fix that it makes.
@@ -111,6 +117,8 @@ public:
     /// Bytes are on their way or a client listens: the wires want to be looked at often.
     [[nodiscard]] bool busy() const;
     [[nodiscard]] std::optional<std::size_t> base() const { return parts_.base; }
+    [[nodiscard]] std::optional<std::size_t> corrections_from() const { return parts_.corrections_from; }
+    [[nodiscard]] bool is_overheard() const { return parts_.overheard; }
     [[nodiscard]] const std::string& name() const { return parts_.name; }
     [[nodiscard]] const firmware::Receiver& receiver() const { return parts_.receiver; }
     [[nodiscard]] PortSpeed speed(firmware::PortId port) const { return port_speed(parts_.receiver, port); }
@@ -147,6 +155,7 @@ private:
     std::vector<FaultyWire> faulty_wires_;  // one more than none: what has no wire is recorded as if it had
     std::size_t heard_again_ = 0;           // of parts_.repeated
     EpochGrid grid_;
+    Bytes overheard_;
     RunCounts counts_;
 };
 

@@ -37,19 +37,14 @@ public:
     void follow(const Observations& observations);
     /// A count breaks by so many cycles. @param noticed the receiver knows it at once
     void slip(const Observation& observation, GpsTime now, double cycles, bool noticed);
-    /// In this epoch the receiver does not know that the count is off.
-    void hide(const Observation& observation);
-    /// After the faults of an epoch: puts what was lost into phases and lock times. What the receiver knows of, or no
-    /// fault hides any longer, is part of the ambiguities that it finds anew.
+    /// After the faults of an epoch: puts what was lost into phases and lock times.
     void apply(Observations& observations, GpsTime now);
     [[nodiscard]] bool empty() const { return counts_.empty(); }
 
 private:
     struct Count {
         double cycles = 0;
-        double resolved = 0;               // of them, in the ambiguity that the receiver goes by
         std::optional<GpsTime> noticed{};  // the last slip that it saw
-        bool hidden = false;
     };
     using Key = std::pair<SatelliteId, Signal>;
 

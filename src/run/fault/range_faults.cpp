@@ -6,7 +6,6 @@
 #include "detail/fault_catalogue.hpp"
 #include "detail/signal_selector.hpp"
 #include "run/fault/fault_kind.hpp"
-#include "world/gnss/constants.hpp"
 
 namespace skyloop::inline run {
 
@@ -16,7 +15,6 @@ void LostCycles::follow(const Observations& observations) {
         if (counts_.empty() || !o.carrier_phase || o.slipped) continue;
         const auto found = counts_.find({o.satellite, o.signal});
         if (found == counts_.end()) continue;
-        found->second.hidden = false;
         kept.insert(*found);
     }
     counts_ = std::move(kept);
@@ -28,21 +26,13 @@ void LostCycles::slip(const Observation& observation, GpsTime now, double cycles
     if (noticed) count.noticed = now;
 }
 
-void LostCycles::hide(const Observation& observation) {
-    const auto found = counts_.find({observation.satellite, observation.signal});
-    if (found != counts_.end()) found->second.hidden = true;
-}
-
 void LostCycles::apply(Observations& observations, GpsTime now) {
     if (counts_.empty()) return;
     for (Observation& o : observations.signals) {
         const auto found = counts_.find({o.satellite, o.signal});
         if (found == counts_.end() || !o.carrier_phase) continue;
-        Count& count = found->second;
+        const Count& count = found->second;
         *o.carrier_phase += count.cycles;
-        if (!count.hidden) count.resolved = count.cycles;
-        if (o.correction && o.correction->phase)
-            *o.correction->phase += Metres(count.resolved * speed_of_light / o.carrier.value());
         if (count.noticed) o.lock_time = std::min(o.lock_time, difference(now, *count.noticed));
     }
 }
@@ -105,7 +95,6 @@ public:
                 moment.lost_cycles->slip(o, moment.now, numbers.uniform() < 0.5 ? -size : size, flagged_);
                 o.slipped = o.slipped || flagged_;
             }
-            if (!flagged_) moment.lost_cycles->hide(o);
         }
     }
 

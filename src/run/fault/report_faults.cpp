@@ -111,6 +111,7 @@ Result<Fault> make_rtk_transition(const Parameters& parameters, const FaultConte
         pair->east_m += east * s;
         pair->down_m -= up * s;
         pair->deviation = std::max(pair->deviation, Metres(accuracy / std::numbers::sqrt2));
+        pair->down_deviation = std::max(pair->down_deviation, Metres(1.5 * accuracy));
     });
 }
 

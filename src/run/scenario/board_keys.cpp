@@ -86,6 +86,7 @@ void read_board_corrections(TableReader& table, firmware::CorrectionAbility& abi
     table.quantity("float_after_s", ability.float_after, {0, 3600});
     table.quantity("fixed_after_s", ability.fixed_after, {0, 3600});
     table.quantity("fixed_held_s", ability.fixed_held, {0, 3600});
+    table.quantity("float_held_s", ability.float_held, {0, 3600});
 }
 
 void read_board_power(TableReader& table, firmware::PowerAbility& power) {

@@ -176,18 +176,25 @@ void read_name(TableReader& receiver, Scenario& scenario) {
                 fmt::format("is the second receiver called '{}'; expected another name", receiver_name(scenario, own)));
 }
 
-// @param names of all receivers of the scenario
+// Another receiver of the scenario; nothing, and perhaps a mistake, for none. @param names of all receivers
+std::optional<std::size_t> read_other_receiver(TableReader& receiver, std::string_view key, std::string_view meaning,
+                                               std::span<const std::string> names, const Scenario& scenario) {
+    std::string name;
+    receiver.text(key, name, {meaning, "none"});
+    if (name.empty() || !names_receiver(receiver, key, name, names)) return std::nullopt;
+    const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    if (index + 1 != scenario.receivers.size()) return index;
+    receiver.mistake(key, fmt::format("'{}' is this receiver itself; expected another one", name));
+    return std::nullopt;
+}
+
 void read_base(TableReader& receiver, std::span<const std::string> names, Scenario& scenario) {
-    std::string base;
-    receiver.text("base", base, {"name of the receiver that carries the base antenna of a pair", "none"});
-    if (base.empty()) return;
-    if (!names_receiver(receiver, "base", base, names)) return;
-    const auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), base) - names.begin());
-    if (index + 1 == scenario.receivers.size())
-        receiver.mistake("base", fmt::format("'{}' is this receiver itself; expected another one", base));
-    else
-        scenario.receivers.back().base = index;
-    judge(receiver, "base", scenario.receivers.back(), unreported_pair);
+    ReceiverEntry& entry = scenario.receivers.back();
+    entry.base = read_other_receiver(receiver, "base", "name of the receiver that carries the base antenna of a pair",
+                                     names, scenario);
+    if (entry.base) judge(receiver, "base", entry, unreported_pair);
+    entry.corrections_from = read_other_receiver(
+        receiver, "corrections_from", "name of the receiver whose RTCM 3 output this one takes in", names, scenario);
 }
 
 // @return where the output goes; an unchanged one, and a mistake, for a text that is no output

@@ -216,8 +216,9 @@ struct ReceiverEntry {
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
     std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
     std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna
-    ToldPlaces told_at{};             ///< of the keys that a board or a machine may refuse
-    std::vector<KeyJudge> judges{};   ///< of the keys of which at some boards nothing comes
+    std::optional<std::size_t> corrections_from{};  ///< the receiver whose RTCM output this one takes in
+    ToldPlaces told_at{};                           ///< of the keys that a board or a machine may refuse
+    std::vector<KeyJudge> judges{};                 ///< of the keys of which at some boards nothing comes
 };
 
 /// A fault and when it works.

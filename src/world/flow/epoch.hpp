@@ -27,13 +27,16 @@ struct FrontEnd {
     SpoofingIndication spoofing = SpoofingIndication::none;
 };
 
-/// The vector from the base antenna to this one, as the receiver solved it.
+/// The vector from the base antenna to this one, as the receiver solved it by carrier phases.
 struct RelativePosition {
     double north_m = 0, east_m = 0, down_m = 0;
-    Metres deviation;        ///< 1 σ of each part
-    bool base_moves = true;  ///< a moving base: the heading of the vector means something
-    bool fixed = true;       ///< the ambiguities are whole numbers
-    int base_station = 0;    ///< 0 … 4095
+    Metres deviation;         ///< 1 σ of north and of east
+    bool base_moves = true;   ///< a moving base: the heading of the vector means something
+    bool fixed = true;        ///< the ambiguities are whole numbers
+    int base_station = 0;     ///< 0 … 4095
+    Metres down_deviation{};  ///< 1 σ
+    Seconds age{0};           ///< of the base's data
+    double ratio = 0;         ///< of the ratio test; 0 where none was passed
 };
 
 /// One navigation epoch, free of the truth.

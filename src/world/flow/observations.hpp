@@ -14,13 +14,6 @@
 
 namespace skyloop::inline world {
 
-/// What a base station nearby tells of a signal, and what the receiver has made of it: the errors of orbits, clocks and
-/// air that both ends of the baseline see.
-struct DifferentialCorrection {
-    Metres code;                  ///< to be taken off the pseudorange
-    std::optional<Metres> phase;  ///< off the phase times its wavelength, the whole cycles among it
-};
-
 /// One signal of one satellite, as tracked.
 struct Observation {
     SatelliteId satellite;
@@ -38,7 +31,6 @@ struct Observation {
     Hertz doppler_deviation;
     /// How skew the peak of correlation is, by wide correlators: 0 of a clean signal; nothing where it is not measured.
     std::optional<double> correlation_distortion{};
-    std::optional<DifferentialCorrection> correction{};  ///< while the receiver uses corrections
     std::optional<Metres> augmentation{};  ///< what an SBAS system would say is to be taken off the pseudorange
     bool called_unhealthy = false;         ///< the satellite sends just now that it is not to be used
 };

@@ -10,6 +10,7 @@
 
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
+#include "world/flow/reference_station.hpp"
 #include "world/gnss/satellite.hpp"
 #include "world/gnss/signal.hpp"
 
@@ -74,9 +75,6 @@ constexpr bool in_sbas_scan_mask(SatelliteId satellite, std::uint64_t mask) {
     return bit >= 0 && bit < bits && (mask >> bit & 1) != 0;
 }
 
-/// How far a receiver has come with the corrections of a base station.
-enum class CorrectionState { none, differential, rtk_float, rtk_fixed };
-
 /// The settings that measurement, solution and the world outside the firmware must respect.
 struct ReceiverSettings {
     Nanoseconds navigation_period{1'000'000'000};
@@ -97,7 +95,7 @@ struct ReceiverSettings {
     int restarts = 0;                  ///< counts up with each restart; the receiver forgets what `start` says
     bool navigating = true;            ///< false: stopped by its user, it tracks nothing
     bool subframes = false;            ///< received subframes are wanted
-    CorrectionState corrections = CorrectionState::none;  ///< of those that a client hands in
+    Corrections corrections{};         ///< that a client hands in
 
     [[nodiscard]] bool tracks(Constellation constellation, Signal signal) const {
         return signals.empty() ? signal == first_signal(constellation) : signals.contains({constellation, signal});

@@ -4,6 +4,7 @@
 
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -139,36 +140,14 @@ TEST(CorrectionInput, ComesBackStepByStepWithAge) {
     EXPECT_EQ(input.status(second(90.5), CorrectionLimits{}).age, Seconds(60.5));
 }
 
-TEST(CorrectionInput, FixesAnewAfterASilence) {
+TEST(CorrectionInput, BeginsAnewAfterASilence) {
     CorrectionInput input(rtk_ability());
     hear(input, 0, 30);
     hear(input, 50, 80);
-    EXPECT_EQ(state_at(input, 50), CorrectionState::rtk_float);
-    EXPECT_EQ(state_at(input, 59.9), CorrectionState::rtk_float);
-    EXPECT_EQ(state_at(input, 60), CorrectionState::rtk_fixed);
-}
-
-TEST(CorrectionInput, BeginsAnewAfterASilenceBeyondTheTimeOut) {
-    CorrectionInput input(rtk_ability());
-    hear(input, 0, 30);
-    hear(input, 121, 140);
-    EXPECT_EQ(state_at(input, 121), CorrectionState::differential);
-    EXPECT_EQ(state_at(input, 125.9), CorrectionState::differential);
-    EXPECT_EQ(state_at(input, 126), CorrectionState::rtk_float);
-    EXPECT_EQ(state_at(input, 135.9), CorrectionState::rtk_float);
-    EXPECT_EQ(state_at(input, 136), CorrectionState::rtk_fixed);
-}
-
-TEST(CorrectionInput, TheConfiguredTimeOutDecidesWhatIsTooLong) {
-    const auto after_a_silence = [](Seconds timeout) {
-        const CorrectionLimits limits{timeout, false};
-        CorrectionInput input(rtk_ability());
-        hear(input, 0, 30);
-        input.take(observations_of(7), second(51), limits);
-        return state_at(input, 51, limits);
-    };
-    EXPECT_EQ(after_a_silence(Seconds(21)), CorrectionState::rtk_float);
-    EXPECT_EQ(after_a_silence(Seconds(20)), CorrectionState::differential);
+    EXPECT_EQ(state_at(input, 50), CorrectionState::differential);
+    EXPECT_EQ(state_at(input, 55), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 64.9), CorrectionState::rtk_float);
+    EXPECT_EQ(state_at(input, 65), CorrectionState::rtk_fixed);
 }
 
 TEST(CorrectionInput, AShortSilenceCostsNothing) {
@@ -189,6 +168,52 @@ TEST(CorrectionInput, FollowsOneStation) {
     hear(input, 31, 40, 8);
     EXPECT_EQ(input.status(second(31), CorrectionLimits{}).station, 8);
     EXPECT_EQ(state_at(input, 32), CorrectionState::differential);
+}
+
+// What a receiver that measures gets: two systems at one instant, from the message on that says that it is the last.
+TEST(CorrectionInput, PutsTheStationTogether) {
+    CorrectionInput input(rtk_ability());
+    const auto told = [](int number, std::uint32_t epoch, bool more, double range_m) {
+        Rtcm3MsmCell cell;
+        cell.satellite = 5;
+        cell.range_m = range_m;
+        cell.phase_range_m = range_m + 0.25;
+        cell.wavelength_m = 0.19;
+        cell.lock_s = 12;
+        cell.satellite_info = 9;  // of GLONASS channel 2
+        return encode(Rtcm3MsmObservations{number, 7, epoch, more, {cell}});
+    };
+    const CorrectionLimits limits{Seconds(20), false};
+    input.take(position_of(7), second(0));
+    // 1001 s of the week of GPS; of GLONASS the same instant in Moscow, with 18 leap seconds.
+    const std::uint32_t moscow = (1001 + 3 * 3600 - 18) * 1000;
+    input.take(told(1077, 1'001'000, true, 2.1e7), second(1.2));
+    EXPECT_FALSE(input.usable(second(1.2), limits).reference) << "more is to come";
+    input.take(told(1087, moscow, false, 2.2e7), second(1.3));
+    const Corrections corrections = input.usable(second(1.3), limits);
+    ASSERT_TRUE(corrections.reference);
+    EXPECT_EQ(corrections.at_most, CorrectionState::rtk_fixed);
+    EXPECT_EQ(corrections.differential_timeout, Seconds(20));
+    EXPECT_EQ(corrections.float_timeout, Seconds(20));
+    EXPECT_EQ(corrections.fixed_timeout, Seconds(15));
+    const ReferenceStation& station = *corrections.reference;
+    EXPECT_EQ(station.id, 7);
+    EXPECT_NEAR(station.position->vector().y(), 2e-4, 1e-9);
+    EXPECT_FALSE(station.glonass_biases_known);
+    EXPECT_EQ(station.epoch.time, second(1));
+    ASSERT_EQ(station.epoch.signals.size(), 2u);
+    const Observation &gps = station.epoch.signals[0], &glonass = station.epoch.signals[1];
+    EXPECT_EQ(to_string(gps.satellite) + to_string(glonass.satellite), "G05R05");
+    EXPECT_NEAR(gps.pseudorange->value(), 2.1e7, 1e-3);
+    EXPECT_NEAR(*gps.carrier_phase * speed_of_light / gps.carrier.value(), 2.1e7 + 0.25, 1e-3);
+    EXPECT_EQ(glonass.carrier, carrier_frequency(Signal::g1, 2));
+    EXPECT_GT(gps.lock_time, Seconds(6));
+    EXPECT_EQ(input.status(second(3), limits).age, Seconds(2)) << "of the data, not of the message";
+
+    input.take(encode(Rtcm3GlonassBiases{7, true, {}}), second(1.4));
+    input.take(told(1077, 1'002'000, false, 2.1e7), second(2.2));
+    EXPECT_TRUE(input.usable(second(2.2), limits).reference->glonass_biases_known);
+    EXPECT_EQ(input.usable(second(2.2), {Seconds(20), true}).at_most, CorrectionState::rtk_float);
 }
 
 }  // namespace

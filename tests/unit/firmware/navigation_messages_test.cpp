@@ -352,7 +352,7 @@ TEST(NavRelposnedMessage, IsFlagOneAndZerosWithoutABase) {
 TEST(NavRelposnedMessage, GivesTheVectorOfAMovingBase) {
     UbxReport f9(9);
     f9.state.epoch.fix.type = FixType::rtk_fixed;
-    f9.state.epoch.relative = RelativePosition{-0.30004, 0.40007, -0.0123, Metres(0.01), true, true, 77};
+    f9.state.epoch.relative = RelativePosition{-0.30004, 0.40007, -0.0123, Metres(0.01), true, true, 77, Metres(0.02)};
     const auto m = f9.report<NavRelposned>();
     EXPECT_EQ(m.ref_station_id, 77);
     EXPECT_EQ(m.rel_pos[0] * 100 + m.rel_pos_hp[0], -3000);

@@ -33,13 +33,23 @@ public:
         const Eigen::Vector3d place = to_ecef(Geodetic::degrees(47, 8, 400)).vector() * 1e4;
         const Rtcm3Station station{7, {std::llround(place.x()), std::llround(place.y()), std::llround(place.z())}, {}};
         receiver_.input(PortId::uart1, encode(station), fix_.time);
-        receiver_.input(PortId::uart1, encode(Rtcm3MsmHeader{1077, 7, 1000, false, 0, 1, 1u << 30, {true}}), fix_.time);
+        Rtcm3MsmCell cell;
+        cell.range_m = 2.1e7;
+        const auto tow = static_cast<std::uint32_t>(week_and_tow(fix_.time).tow / 1ms);
+        receiver_.input(PortId::uart1, encode(Rtcm3MsmObservations{1077, 7, tow, false, {cell}}), fix_.time);
+        ++heard_;
     }
-    // The next second. What it solves follows from the settings, but for `fewer`: satellites that have no correction.
+    // The next second. What it solves follows from the corrections at hand, but for `fewer`: satellites that have none.
     const NavigationState& go_on(bool fewer = false) {
         fix_.time += 1s;
-        constexpr FixType types[] = {FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
-        fix_.type = types[fewer ? 0 : static_cast<std::size_t>(receiver_.settings_at(fix_.time).corrections)];
+        const Corrections& corrections = receiver_.settings_at(fix_.time).corrections;
+        const Seconds age =
+            corrections.reference ? difference(fix_.time, corrections.reference->epoch.time) : Seconds(0);
+        const bool any = !fewer && corrections.reference && age <= corrections.differential_timeout;
+        fix_.type = !any                                            ? FixType::fix_3d
+                    : age > corrections.float_timeout               ? FixType::dgnss
+                    : heard_ < 5 || age > corrections.fixed_timeout ? FixType::rtk_float
+                                                                    : FixType::rtk_fixed;
         Epoch epoch{fix_};
         epoch.observations.receive_time = fix_.time;
         epoch.observations.signals.emplace_back();
@@ -50,6 +60,7 @@ public:
 private:
     Receiver receiver_;
     Fix fix_;
+    int heard_ = 0;
 };
 
 // What is told of corrections is that of the solution in the same epoch.
@@ -68,9 +79,6 @@ TEST(ReceiverCorrections, AreThoseOfTheSolutionFromTheFirstEpochToTheLast) {
         const NavigationState& state = rover.go_on();
         EXPECT_TRUE(agrees(state)) << i;
         EXPECT_TRUE(state.corrections.come);
-        if (i == 0) {
-            EXPECT_EQ(state.corrections.state, CorrectionState::differential);
-        }
         last = state.corrections.state;
     }
     EXPECT_EQ(last, CorrectionState::rtk_fixed);
@@ -106,7 +114,7 @@ TEST(ReceiverCorrections, DoNotActBackwards) {
     rover.receiver().on_epoch(epoch);
     EXPECT_EQ(rover.receiver().state().corrections.state, CorrectionState::none);
     EXPECT_EQ(corrections_in_use(rover.receiver().state()), CorrectionOrigin::sbas);
-    EXPECT_EQ(rover.receiver().settings().corrections, CorrectionState::differential);
+    EXPECT_EQ(rover.receiver().settings_at(fix.time).corrections.at_most, CorrectionState::rtk_fixed);
 }
 
 TEST(ReceiverCorrections, OfCarrierPhasesAreNeverThoseOfSbas) {

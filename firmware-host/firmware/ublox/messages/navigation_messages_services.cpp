@@ -115,7 +115,8 @@ std::optional<Baseline> baseline_of(const NavigationState& state) {
                        .deviation = fix.horizontal_accuracy / std::numbers::sqrt2,
                        .base_moves = false,
                        .fixed = baseline.carrier == 2,
-                       .base_station = corrections.station.value_or(0)};
+                       .base_station = corrections.station.value_or(0),
+                       .down_deviation = fix.vertical_accuracy};
     return baseline;
 }
 
@@ -135,9 +136,17 @@ NavRelposned0 relative_position_m8(const ReportContext& context, const std::opti
     const RelativePosition& relative = baseline->vector;
     m.ref_station_id.set(relative.base_station);
     put_split(Eigen::Vector3d(relative.north_m, relative.east_m, relative.down_m), m.rel_pos, m.rel_pos_hp);
-    for (std::size_t i = 0; i < m.acc.size(); ++i)
-        m.acc.set(i, relative.deviation.value());
+    m.acc.set(0, relative.deviation.value());
+    m.acc.set(1, relative.deviation.value());
+    m.acc.set(2, relative.down_deviation.value());
     return m;
+}
+
+// 1 σ along the vector, m.
+double length_deviation(const RelativePosition& r, double length) {
+    if (!(length > 0)) return r.deviation.value();
+    const double level = std::hypot(r.north_m, r.east_m) / length, down = r.down_m / length;
+    return std::hypot(level * r.deviation.value(), down * r.down_deviation.value());
 }
 
 NavRelposned relative_position(const ReportContext& context) {
@@ -154,7 +163,7 @@ NavRelposned relative_position(const ReportContext& context) {
     const RelativePosition* relative = &baseline->vector;
     const double length = std::hypot(relative->north_m, relative->east_m, relative->down_m);
     put_split(length, m.rel_pos_length, m.rel_pos_length_hp);
-    m.acc_length = m.acc[0];
+    m.acc_length.set(length_deviation(*relative, length));
     const double heading = std::atan2(relative->east_m, relative->north_m) * 180 / std::numbers::pi;
     m.rel_pos_heading.set(std::fmod(heading + 360, 360.0));
     const double level = std::hypot(relative->north_m, relative->east_m);

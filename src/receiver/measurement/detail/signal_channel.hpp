@@ -23,7 +23,6 @@ struct ChannelEpoch {
     Metres clock_bias;
     MetresPerSecond clock_drift;
     StartKind knowledge = StartKind::hot;
-    bool corrected = false;  ///< a base station nearby is heard
 };
 
 /// A signal and the satellite that it comes from.
@@ -63,7 +62,6 @@ private:
     void hear_echoes(const ChannelInput& input, const ChannelEpoch& epoch);
     [[nodiscard]] bool path_changed(const ChannelInput& input, const ChannelEpoch& epoch) const;
     void draw_errors(const ChannelInput& input, const ChannelEpoch& epoch);
-    [[nodiscard]] DifferentialCorrection correction(const ChannelInput& input, Metres iono) const;
 
     SatelliteId satellite_;
     Signal signal_;

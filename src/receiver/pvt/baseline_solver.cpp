@@ -1,0 +1,226 @@
+#include "receiver/pvt/baseline_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/geo/local_frame.hpp"
+#include "detail/square.hpp"
+#include "receiver/pvt/expected_error.hpp"
+#include "world/gnss/constants.hpp"
+#include "world/gnss/orbit.hpp"
+
+namespace skyloop::inline receiver {
+namespace {
+
+constexpr int least_corrected = 4;
+
+// From a place to where a satellite was when it sent.
+struct Sight {
+    double distance_m = 0;
+    Eigen::Vector3d line;  // unit vector, ECEF of reception
+    Position<Ecef> satellite;
+};
+
+Sight sight_of(const Transmitter& transmitter, const Position<Ecef>& place) {
+    const Eigen::Vector3d& sent_from = transmitter.position.vector();
+    Eigen::Vector3d satellite = sent_from;
+    // Each look leaves 1e-6 of the error of the one before.
+    for (int look = 0; look < 3; ++look)
+        satellite = turned_by(sent_from, (satellite - place.vector()).norm() / speed_of_light);
+    const Eigen::Vector3d way = satellite - place.vector();
+    return {way.norm(), way / way.norm(), Position<Ecef>(satellite)};
+}
+
+const Observation* find_signal(const std::vector<Observation>& signals, const Observation& same) {
+    const auto before = [](const Observation& a, const Observation& b) {
+        return std::pair(a.satellite, a.signal) < std::pair(b.satellite, b.signal);
+    };
+    const auto at = std::lower_bound(signals.begin(), signals.end(), same, before);
+    return at != signals.end() && at->satellite == same.satellite && at->signal == same.signal ? &*at : nullptr;
+}
+
+bool has_phase(const Observation& o) { return o.pseudorange && o.carrier_phase && o.half_cycle_resolved; }
+
+// By how much the variances of a weak signal, which echoes outdo sooner, are larger.
+double weakness(DbHz cn0) {
+    constexpr double strong_dbhz = 40;
+    return std::pow(10, 0.1 * std::max(0.0, strong_dbhz - cn0.value()));
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// What one end sees of a satellite.
+struct End {
+    Sight sight;
+    double clock_m = 0;  // of the satellite
+    double dry_m = 0;    // delay of a standard atmosphere
+
+    [[nodiscard]] double left_of(double range_m) const { return range_m - sight.distance_m + clock_m - dry_m; }
+};
+
+// The two ends' looks at one satellite, by one of its signals.
+struct BothEnds {
+    End own, reference;
+    Angle elevation;
+};
+
+// A place with the air above it.
+struct Site {
+    Position<Ecef> place;
+    LocalFrame frame;
+    SiteCorrections air;
+
+    Site(const Position<Ecef>& at, const RangeCorrections& corrections, GpsTime time)
+        : place(at), frame(to_geodetic(at)), air(corrections.at(frame.origin(), time)) {}
+    [[nodiscard]] End look(const Transmitter& transmitter) const {
+        End end{sight_of(transmitter, place), speed_of_light * transmitter.clock_bias.value(), 0};
+        end.dry_m = air.troposphere(elevation_of(end.sight)).value();
+        return end;
+    }
+    [[nodiscard]] Angle elevation_of(const Sight& sight) const { return frame.look_angles(sight.satellite).elevation; }
+};
+
+}  // namespace
+
+int correct_codes(Observations& observations, const ReferenceStation& reference, TransmitterSource& transmitters) {
+    if (!reference.position) return 0;
+    std::vector<std::pair<Observation*, double>> corrections;
+    std::vector<double> values;
+    std::set<SatelliteId> satellites;
+    for (Observation& o : observations.signals) {
+        const Observation* other = find_signal(reference.epoch.signals, o);
+        if (!o.pseudorange || other == nullptr || !other->pseudorange) continue;
+        const auto sent = transmitters.at(o.satellite, o.signal, reference.epoch.time, *other->pseudorange);
+        if (!sent) continue;
+        const double distance = sight_of(*sent, *reference.position).distance_m;
+        const double correction = other->pseudorange->value() - distance + speed_of_light * sent->clock_bias.value();
+        corrections.emplace_back(&o, correction);
+        values.push_back(correction);
+        satellites.insert(o.satellite);
+    }
+    if (static_cast<int>(satellites.size()) < least_corrected) return static_cast<int>(satellites.size());
+    const double clock = median(values);
+    std::vector<Metres> corrected;
+    corrected.reserve(corrections.size());
+    for (const auto& [o, correction] : corrections)
+        corrected.push_back(*o->pseudorange - Metres(correction - clock));
+    for (Observation& o : observations.signals)
+        o.pseudorange.reset();
+    for (std::size_t i = 0; i < corrections.size(); ++i)
+        corrections[i].first->pseudorange = corrected[i];
+    return static_cast<int>(satellites.size());
+}
+
+RelativePosition relative_position(const BaselineSolution& solution, const ReferenceStation& reference) {
+    const LocalFrame frame(to_geodetic(*reference.position));
+    const Eigen::Vector3d enu = frame.to_enu(solution.vector).vector();
+    const Eigen::Matrix3d covariance = in_enu(frame, solution.covariance);
+    RelativePosition relative;
+    relative.north_m = enu.y();
+    relative.east_m = enu.x();
+    relative.down_m = -enu.z();
+    relative.deviation = Metres(std::sqrt((covariance(0, 0) + covariance(1, 1)) / 2));
+    relative.down_deviation = Metres(std::sqrt(covariance(2, 2)));
+    relative.base_moves = reference.moves;
+    relative.fixed = solution.fixed;
+    relative.base_station = reference.id;
+    relative.age = solution.age;
+    relative.ratio = solution.ratio;
+    return relative;
+}
+
+// By the lock times that a message tells, which may be less than they are but not more.
+bool BaselineSolver::reference_broke(const Observation& o, GpsTime time) {
+    const auto [known, is_new] = counted_.try_emplace({o.satellite, o.signal}, Counted{time, o.lock_time});
+    if (is_new) return true;
+    const Counted before = known->second;
+    if (time == before.time) return false;
+    known->second = {time, o.lock_time};
+    return o.lock_time < before.lock || o.lock_time < Seconds(0.5 * difference(time, before.time).value());
+}
+
+std::vector<SingleDifference> BaselineSolver::differences(const BaselineInput& input, TransmitterSource& transmitters) {
+    const GpsTime received = input.observations.receive_time, other_received = input.reference.epoch.time;
+    const Site here(input.place, air_, input.time), there(*input.reference.position, air_, input.time);
+    const double age_variance = square(parameters_.per_age.value() * difference(input.time, other_received).value());
+    std::vector<SingleDifference> result;
+    std::optional<SatelliteId> satellite;
+    std::optional<BothEnds> ends;
+    for (const Observation& o : input.observations.signals) {
+        const Observation* other = find_signal(input.reference.epoch.signals, o);
+        if (!input.usable.contains(o.satellite) || other == nullptr || !has_phase(o) || !has_phase(*other)) continue;
+        if (satellite != o.satellite || !ends) {
+            // One signal's transmitter does for all: group delays are the same at both ends.
+            satellite = o.satellite;
+            ends.reset();
+            const auto own = transmitters.at(o.satellite, o.signal, received, *o.pseudorange);
+            const auto others = transmitters.at(o.satellite, o.signal, other_received, *other->pseudorange);
+            if (!own || !others) continue;
+            ends = BothEnds{here.look(*own), there.look(*others), {}};
+            ends->elevation = here.elevation_of(ends->own.sight);
+        }
+        const double wave = speed_of_light / o.carrier.value();
+        const double slant = 1 / std::max(std::sin(ends->elevation.rad()), 0.05);
+        const GpsTime seen = std::exchange(own_[{o.satellite, o.signal}], input.time);
+        SingleDifference d;
+        d.satellite = o.satellite;
+        d.signal = o.signal;
+        d.wavelength_m = wave;
+        d.code_m = ends->own.left_of(o.pseudorange->value()) - ends->reference.left_of(other->pseudorange->value());
+        d.phase_m = ends->own.left_of(*o.carrier_phase * wave) - ends->reference.left_of(*other->carrier_phase * wave);
+        d.line = ends->own.sight.line;
+        d.elevation = ends->elevation;
+        const double weak = weakness(o.cn0) + weakness(other->cn0);
+        d.code_variance =
+            weak * (square(parameters_.code_floor.value()) + square(parameters_.code_at_zenith.value() * slant)) +
+            age_variance;
+        d.phase_variance =
+            weak * (square(parameters_.phase_floor.value()) + square(parameters_.phase_at_zenith.value() * slant)) +
+            age_variance;
+        d.ionosphere_factor = square(carrier_frequency(Signal::l1).value() / o.carrier.value());
+        d.wet_mapping = slant;
+        const bool gap = o.lock_time < difference(input.time, seen);
+        d.broken = reference_broke(*other, other_received) || o.slipped || gap;
+        d.whole = o.satellite.constellation != Constellation::glonass || input.reference.glonass_biases_known;
+        result.push_back(d);
+    }
+    return result;
+}
+
+std::optional<BaselineSolution> BaselineSolver::solve(const BaselineInput& input, TransmitterSource& transmitters) {
+    const std::vector<SingleDifference> all = differences(input, transmitters);
+    const Displacement<Ecef> apart = input.place - *input.reference.position;
+    const Metres height =
+        to_geodetic(input.place).height.above_ellipsoid - to_geodetic(*input.reference.position).height.above_ellipsoid;
+    const Spacing spacing{apart.length().value(), height.value()};
+    const std::optional<CarrierOffset> floating = filter_.update(all, spacing, input.time);
+    if (!floating) return std::nullopt;
+    std::optional<FixedOffset> fixed;
+    if (input.may_fix) fixed = filter_.fix();
+    const CarrierOffset& best = fixed ? *fixed : *floating;
+    BaselineSolution solution;
+    solution.position = input.place + Displacement<Ecef>(best.offset);
+    solution.vector = solution.position - *input.reference.position;
+    solution.covariance = best.covariance;
+    solution.fixed = fixed.has_value();
+    solution.ratio = fixed ? fixed->ratio : 0;
+    solution.ambiguities = fixed ? fixed->ambiguities : 0;
+    std::set<SatelliteId> satellites;
+    for (const SingleDifference& d : all)
+        satellites.insert(d.satellite);
+    solution.satellites = static_cast<int>(satellites.size());
+    solution.age = difference(input.time, input.reference.epoch.time);
+    return solution;
+}
+
+void BaselineSolver::reset() {
+    filter_.reset();
+    counted_.clear();
+    own_.clear();
+}
+
+}  // namespace skyloop::inline receiver

@@ -1,0 +1,29 @@
+/// Whole numbers of cycles that fit floating ones best: the LAMBDA method.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace skyloop::inline receiver {
+
+/// The two best integer vectors.
+struct IntegerCandidates {
+    Eigen::VectorXd best, second;
+    double best_norm = 0, second_norm = 0;  ///< squared distances from the floating ones, by their covariance
+    /// Probability that the best one is right if the covariance is: that of rounding one after the other, which is a
+    /// lower bound (Teunissen 1998, Success probability of integer GPS ambiguity rounding and bootstrapping, eq. 32).
+    double success = 0;
+
+    /// The ratio test: how much worse the second best is.
+    [[nodiscard]] double ratio() const;
+};
+
+/// Least squares over whole numbers: decorrelation by unimodular transformations (Teunissen 1995, The least-squares
+/// ambiguity decorrelation adjustment), then a search that goes deep first and shrinks (Chang, Yang and Zhou 2005,
+/// MLAMBDA, section 4).
+/// @param floats n floating ambiguities, cycles  @param covariance of them, n × n, cycles²
+/// @return nothing for none, for a covariance that is not positive definite, and where the search takes too long
+std::optional<IntegerCandidates> search_integers(const Eigen::VectorXd& floats, const Eigen::MatrixXd& covariance);
+
+}  // namespace skyloop::inline receiver
