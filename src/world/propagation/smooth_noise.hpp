@@ -111,8 +111,7 @@ public:
             nearest[i] -= static_cast<double>(nearest[i]) > shifted ? 1 : 0;  // rounded down, without std::floor's call
             const double x = cells[i] - static_cast<double>(nearest[i]);
             weights[i] = {(0.5 - x) * (0.5 - x) / 2, 0.75 - x * x, (0.5 + x) * (0.5 + x) / 2};
-            const auto& [before, middle, after] = weights[i];
-            square *= before * before + middle * middle + after * after;
+            square *= 0.59375 + x * x * (1.5 * x * x - 0.75);  // the sum of the weights' squares
         }
         if (nearest != nearest_ || key != key_) remember(key, nearest);
         return sum(weights) / std::sqrt(square);
