@@ -53,7 +53,7 @@ std::array<double, 2> delays_at(PropagationEffect& effect, const Receiver& recei
     return {(arrivals.satellites[0].*delay).value(), (arrivals.satellites[1].*delay).value()};
 }
 
-// Treuhaft and Lanyi 1987, equations 3 and 5, of the zenith delay: h = 2 km, L = 3000 km, C = 2.4e-7 m^(-1/3).
+// Treuhaft and Lanyi 1987, of the zenith delay: h = 2 km, L = 3000 km, C = 2.4e-7 m^(-1/3).
 double wet_structure(double distance) {
     constexpr double height = 2000, saturation = 3000e3, constant = 2.4e-7;
     constexpr int steps = 400;
