@@ -7,7 +7,8 @@ namespace skyloop::inline base {
 namespace {
 
 constexpr double knots_of_memory = 10;
-constexpr std::int64_t knots_of_block = 32, most_missed = 256;
+constexpr double memories_of_span = 40;  // e^−40 is nothing beside 1 in 53 bits
+constexpr std::int64_t most_knots_of_span = std::int64_t{1} << 40, most_missed = 256;
 constexpr Nanoseconds closest_knots = std::chrono::milliseconds(1);
 
 Nanoseconds spacing_within(Nanoseconds most, Seconds correlation_time) {
@@ -19,52 +20,68 @@ Nanoseconds spacing_within(Nanoseconds most, Seconds correlation_time) {
 }  // namespace
 
 KnottedProcess::KnottedProcess(GaussMarkovParameters parameters, Nanoseconds spacing, RandomStream stream)
-    : parameters_(parameters),
-      spacing_(spacing_within(spacing, parameters.correlation_time)),
-      normals_(stream),
-      step_(gauss_markov_step(parameters, to_seconds(spacing_))) {}
-
-KnottedProcess KnottedProcess::walk(double per_root_second, Nanoseconds spacing, RandomStream stream) {
-    KnottedProcess process({per_root_second, Seconds(0)}, spacing, stream);
-    process.walk_ = true;
-    process.step_ = {1, per_root_second * std::sqrt(to_seconds(spacing).value())};
-    return process;
-}
+    : parameters_(parameters), spacing_(spacing_within(spacing, parameters.correlation_time)), normals_(stream) {}
 
 void KnottedProcess::set_correlation_time(Seconds time) {
     if (time == parameters_.correlation_time) return;
     parameters_.correlation_time = time;
     step_ = gauss_markov_step(parameters_, to_seconds(spacing_));
+    retuned_ = true;
+    spans_.clear();
 }
 
-// The value at a knot, so many steps after the newest; only a walk takes more than one.
-void KnottedProcess::draw(std::int64_t steps, std::int64_t knot) {
-    newest_ = step_.phi * newest_ + step_.noise * std::sqrt(static_cast<double>(steps)) * normals_.at(knot);
+// In the middle of a span: the mean of what is known on both sides, and what is open yet.
+double KnottedProcess::between(const Span& span) const {
+    const double half = static_cast<double>(span.knots / 2) * to_seconds(spacing_).value();
+    const GaussMarkovStep step = gauss_markov_step(parameters_, Seconds(half));
+    const double known = 1 + step.phi * step.phi;
+    return (span.first + span.last) * (step.phi / known) +
+           step.noise / std::sqrt(known) * normals_.at(span.from + span.knots / 2);
+}
+
+double KnottedProcess::at_knot(std::int64_t knot) {
+    while (!spans_.empty() && !spans_.back().holds(knot))
+        spans_.pop_back();
+    if (spans_.empty()) {
+        std::int64_t knots = 1;
+        const double memory = memories_of_span * parameters_.correlation_time.value() / to_seconds(spacing_).value();
+        while (static_cast<double>(knots) < memory && knots < most_knots_of_span)
+            knots *= 2;
+        const std::int64_t from = knot - ((knot % knots) + knots) % knots;
+        spans_.push_back(
+            {from, knots, parameters_.sigma * normals_.at(from), parameters_.sigma * normals_.at(from + knots)});
+    }
+    while (spans_.back().from != knot) {
+        const Span span = spans_.back();
+        const std::int64_t half = span.knots / 2, middle = span.from + half;
+        const double there = between(span);
+        spans_.push_back(knot < middle ? Span{span.from, half, span.first, there}
+                                       : Span{middle, half, there, span.last});
+    }
+    return spans_.back().first;
+}
+
+void KnottedProcess::draw(std::int64_t knot) {
+    const double newest = values_.back();
     std::rotate(values_.begin(), values_.begin() + 1, values_.end());
-    values_.back() = newest_;
+    if (!retuned_) {
+        values_.back() = at_knot(knot);
+        return;
+    }
+    values_.back() = step_.phi * newest + step_.noise * normals_.at(knot);
 }
 
 void KnottedProcess::start(std::int64_t knot) {
-    std::int64_t first = knot - 1;
-    if (!walk_) first -= ((first % knots_of_block) + knots_of_block) % knots_of_block;
-    newest_ = walk_ ? 0 : parameters_.sigma * normals_.at(first);
-    values_.back() = newest_;
-    while (first < knot + 2)
-        draw(1, ++first);
+    for (std::size_t i = 0; i < values_.size(); ++i)
+        values_[i] = at_knot(knot - 1 + static_cast<std::int64_t>(i));
     knot_ = knot;
     started_ = true;
 }
 
 void KnottedProcess::move_to(std::int64_t knot) {
-    const std::int64_t missed = started_ ? knot - knot_ - 4 : 0;
-    if (!started_ || (missed > most_missed && !walk_)) {
-        start(knot);
-    } else if (missed > 0 && walk_) {  // of a long absence only the end is drawn: all four knots anew
-        knot_ += missed + 1;
-        draw(missed + 1, knot_ + 2);
-    }
+    if (!started_ || knot - knot_ > (retuned_ ? most_missed : 4)) start(knot);
     for (; knot_ < knot; ++knot_)
-        draw(1, knot_ + 3);
+        draw(knot_ + 3);
 }
 
 double KnottedProcess::at(GpsTime time) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "base/core/random.hpp"
 #include "base/core/units.hpp"
@@ -10,40 +11,48 @@
 
 namespace skyloop::inline base {
 
-/// A random process that is drawn at knots, whole multiples of a spacing in GPS time, and runs through them on a cubic
-/// (Catmull and Rom 1974). It has a rate, and its path depends neither on how often it is looked at nor, but for the
-/// start of a block of knots, on when it was first: each knot has random numbers of its own, and the first look, and
-/// one after a long absence, begins at the start of its block.
+/// A first-order Gauss-Markov process (MODELS.md 7.15) that is drawn at knots, whole multiples of a spacing in GPS
+/// time, and runs through them on a cubic (Catmull and Rom 1974). It has a rate, and it is a function of GPS time: to
+/// the bit the same whenever it is first looked at, however often, and in whatever run. For each knot has a random
+/// number of its own, and knots that lie 40 correlation times or more apart are independent; between two such ones the
+/// middle is drawn from what a Gauss-Markov process has between two known values (Lévy's construction of the Brownian
+/// motion), and so on.
 ///
-/// State: the four knots around the present instant.
+/// State: the four knots around the present instant, and the halves that led to the last one.
 class KnottedProcess {
 public:
-    /// A first-order Gauss-Markov process from its stationary distribution (MODELS.md 7.15).
+    /// In its stationary distribution.
     /// @param spacing at most; for correlation times below ten of it a whole part, so that a tenth of the time is not
     /// exceeded: the cubic leaves out what lies between the knots
     KnottedProcess(GaussMarkovParameters parameters, Nanoseconds spacing, RandomStream stream);
-    /// A random walk that starts from 0. @param per_root_second 1 σ after one second
-    static KnottedProcess walk(double per_root_second, Nanoseconds spacing, RandomStream stream);
 
     /// Moves to `time`, not earlier than before, and returns the value there.
     double at(GpsTime time);
-    /// From the next knot on it forgets itself at another rate, with the same σ.
+    /// From the next knot on it forgets itself at another rate, with the same σ: what it is then depends on its past.
     void set_correlation_time(Seconds time);
     /// Derivative at the time of the last at(), per second.
     [[nodiscard]] double rate() const { return rate_; }
 
 private:
-    void draw(std::int64_t steps, std::int64_t knot);
+    // Two knots and what the process is there.
+    struct Span {
+        std::int64_t from = 0, knots = 0;
+        double first = 0, last = 0;
+        [[nodiscard]] bool holds(std::int64_t knot) const { return knot >= from && knot - from < knots; }
+    };
+    double at_knot(std::int64_t knot);
+    [[nodiscard]] double between(const Span& span) const;
+    void draw(std::int64_t knot);
     void start(std::int64_t knot);
     void move_to(std::int64_t knot);
 
     GaussMarkovParameters parameters_;
     Nanoseconds spacing_;
     IndexedNormals normals_;
-    bool walk_ = false, started_ = false;
-    GaussMarkovStep step_;  // over one spacing
+    bool retuned_ = false, started_ = false;
+    GaussMarkovStep step_;     // over one spacing, of one that is retuned
+    std::vector<Span> spans_;  // each a half of the one before
     std::int64_t knot_ = 0;
-    double newest_ = 0;  // value at knot_ + 2
     std::array<double, 4> values_{};
     double rate_ = 0;
 };

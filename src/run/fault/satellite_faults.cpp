@@ -90,26 +90,46 @@ Result<Fault> make_unhealthy(const Parameters& parameters, const FaultContext&) 
     });
 }
 
-// Vertical delay at L1 beside what the day has, as a plane over the antenna, m.
+// Vertical delay at L1 beside what the day has: a plane, or a wedge with a plateau behind it, that may move.
 struct StormFront {
     double factor = 1;
     double vertical = 0;
-    double gradient = 0;  // m/km
-    Angle towards;        // into which the delay grows
+    double gradient = 0;             // m/km
+    Angle towards;                   // into which the delay grows
+    std::optional<Geodetic> foot{};  // where it begins to grow at the start; nothing: over the antenna
+    std::optional<double> width{};   // km over which it grows
+    double speed = 0;                // m/s, against `towards`: the high delays come on
+    [[nodiscard]] bool passes() const { return foot || speed != 0; }
 };
 
 constexpr ThinShell storm_shell{Metres(6371000), Metres(350000)};
 
-// Where the ray crosses the shell, km over the ground towards where the storm grows.
-double way_into_storm(const StormFront& storm, const SkyDirection& direction) {
-    const double radius = storm_shell.earth_radius.value(), top = radius + storm_shell.height.value();
-    const double e = std::max(direction.elevation.rad(), 0.0);
-    const double across = std::numbers::pi / 2 - e - std::asin(radius * std::cos(e) / top);
-    return radius / 1000 * across * std::cos((direction.azimuth - storm.towards).rad());
+// How far the point lies beyond the great circle that is square to a direction at a place, as an angle at the centre.
+double beyond(const Geodetic& place, Angle towards, const PiercePoint& point) {
+    const double from = place.latitude.rad(), to = point.latitude.rad();
+    const double east = (point.longitude - place.longitude).rad();
+    const double eastwards = std::cos(to) * std::sin(east);
+    const double northwards = std::cos(from) * std::sin(to) - std::sin(from) * std::cos(to) * std::cos(east);
+    const double sine = std::sin(towards.rad()) * eastwards + std::cos(towards.rad()) * northwards;
+    return std::asin(std::clamp(sine, -1.0, 1.0));
 }
 
-void storm_over(Arrival& arrival, const StormFront& storm, const FaultMoment& moment) {
-    const double vertical = storm.vertical + storm.gradient * way_into_storm(storm, arrival.direction);
+// Where the ray crosses the shell, km over the ground towards where the storm grows.
+double way_into_storm(const StormFront& storm, const SkyDirection& direction, const FaultMoment& moment) {
+    const double radius = storm_shell.earth_radius.value() / 1000;
+    const SkyDirection above{direction.azimuth, std::max(direction.elevation, Angle())};
+    const double come = storm.speed * moment.since_start.value() / 1000;
+    if (storm.foot && moment.truth != nullptr)
+        return come +
+               radius * beyond(*storm.foot, storm.towards, pierce_point(storm_shell, moment.truth->geodetic, above));
+    const double across = pierce_angle(storm_shell, above.elevation).rad();
+    return come + radius * across * std::cos((direction.azimuth - storm.towards).rad());
+}
+
+void storm_over(Arrival& arrival, const StormFront& storm, const FaultMoment& moment, RateOfChange& rates) {
+    double way = way_into_storm(storm, arrival.direction, moment);
+    if (storm.width) way = std::clamp(way, 0.0, *storm.width);
+    const double vertical = storm.vertical + storm.gradient * way;
     const double slant = single_layer_mapping(storm_shell, arrival.direction.elevation);
     const double carrier = arrival.signals.empty() ? carrier_frequency_l1 : arrival.signals[0].carrier.value();
     const double ratio = carrier_frequency_l1 / carrier;
@@ -118,19 +138,38 @@ void storm_over(Arrival& arrival, const StormFront& storm, const FaultMoment& mo
     // There is no less than no ionosphere.
     arrival.iono_delay = std::max(wanted, Metres(0));
     arrival.false_iono_delay += arrival.iono_delay - before;
-    if (wanted > Metres(0)) arrival.false_iono_rate += MetresPerSecond(moment.strength_rate * added);
+    if (storm.passes())
+        arrival.false_iono_rate += rates.of(arrival.id, arrival.iono_delay - before, moment.now);
+    else if (wanted > Metres(0))
+        arrival.false_iono_rate += MetresPerSecond(moment.strength_rate * added);
+}
+
+Result<StormFront> read_storm(const Parameters& parameters) {
+    StormFront storm{parameters.number("tec_factor"), parameters.number("vertical_delay_m"),
+                     parameters.number("gradient_mm_per_km") / 1000,
+                     Angle::degrees(parameters.number("gradient_towards_deg"))};
+    storm.width = parameters.optional_number("front_width_km");
+    storm.speed = parameters.number("front_speed_mps");
+    if (const std::vector<double> foot = parameters.numbers("front_at"); !foot.empty()) {
+        const auto place = ToldPlace::read(parameters, "front_at");
+        if (!place) return fail(place.error());
+        storm.foot = Geodetic::degrees(foot[0], foot[1], 0);
+    }
+    if (storm.factor == 1 && storm.vertical == 0 && storm.gradient == 0)
+        return fail(ErrorCode::usage, "no storm is told; expected tec_factor, vertical_delay_m or gradient_mm_per_km");
+    if (storm.gradient == 0 && (storm.foot || storm.width || storm.speed != 0))
+        return fail(ErrorCode::usage, "a front without gradient_mm_per_km; expected one above 0");
+    return storm;
 }
 
 Result<Fault> make_ionospheric_storm(const Parameters& parameters, const FaultContext&) {
-    const StormFront storm{parameters.number("tec_factor"), parameters.number("vertical_delay_m"),
-                           parameters.number("gradient_mm_per_km") / 1000,
-                           Angle::degrees(parameters.number("gradient_towards_deg"))};
-    if (storm.factor == 1 && storm.vertical == 0 && storm.gradient == 0)
-        return fail(ErrorCode::usage, "no storm is told; expected tec_factor, vertical_delay_m or gradient_mm_per_km");
-    return fault_of<&Fault::arrivals>([storm](Arrivals& arrivals, const FaultMoment& moment) {
-        for (Arrival& arrival : arrivals.satellites)
-            storm_over(arrival, storm, moment);
-    });
+    const auto storm = read_storm(parameters);
+    if (!storm) return fail(storm.error());
+    return fault_of<&Fault::arrivals>(
+        [storm = *storm, rates = RateOfChange()](Arrivals& arrivals, const FaultMoment& moment) mutable {
+            for (Arrival& arrival : arrivals.satellites)
+                storm_over(arrival, storm, moment, rates);
+        });
 }
 
 Result<Fault> make_scintillation(const Parameters& parameters, const FaultContext&) {
@@ -176,7 +215,14 @@ constexpr auto satellite_kinds = std::to_array<FaultKind>({
      {number_parameter("tec_factor", 1, 0, 20, "by which the day's electron content is multiplied"),
       number_parameter("vertical_delay_m", 0, -50, 200, "m at L1 that are added overhead"),
       number_parameter("gradient_mm_per_km", 0, 0, 1000, "mm at L1 by which that grows with each km over the ground"),
-      number_parameter("gradient_towards_deg", 0, -360, 360, "degrees from north, where it grows to")},
+      number_parameter("gradient_towards_deg", 0, -360, 360, "degrees from north, where it grows to"),
+      place_parameter(
+          "front_at",
+          "where it begins to grow at the start, one front for all receivers; not given: over each antenna"),
+      number_parameter("front_width_km", no_standard, 1, 10000,
+                       "km over which it grows, with as much as there behind it; not given: on and on"),
+      number_parameter("front_speed_mps", 0, -2000, 2000,
+                       "m/s by which the front comes on, against the direction where it grows to")},
      make_ionospheric_storm},
     {"scintillation",
      "Amplitude and phase of the selected signals flicker: C/N0 fades, ranges get noisy, cycles slip, and from "

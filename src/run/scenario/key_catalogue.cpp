@@ -15,8 +15,7 @@ struct UnitSuffix {
     std::string_view suffix, unit;
 };
 // Longer ones first where one ends another.
-constexpr std::array<UnitSuffix, 44> unit_suffixes{{{"_m_per_sqrt_h", "m/√h"},
-                                                    {"_db_per_km_per_g_m3", "dB/km per g/m³"},
+constexpr std::array<UnitSuffix, 43> unit_suffixes{{{"_db_per_km_per_g_m3", "dB/km per g/m³"},
                                                     {"_db_per_km", "dB/km"},
                                                     {"_db_per_m", "dB/m"},
                                                     {"_kg_per_mol", "kg/mol"},

@@ -64,6 +64,11 @@ void read_ionosphere_truth(TableReader& table, ModernSettings& settings, const s
         table.numbers("klobuchar_beta", p.klobuchar.beta, "for klobuchar when the navigation data has none of GPS");
     });
     read_ionosphere_residual(table, p);
+    table.quantity("disturbance_tecu", p.waves.content, {0, 100},
+                   "σ of the vertical content in travelling disturbances: 0.35 quiet, 4 disturbed; 0: none");
+    table.where(p.waves.content != Tecu(0), "with disturbance_tecu above 0", [&] {
+        table.quantity("disturbance_speed_mps", p.waves.speed, {0, 2000}, "by which they travel");
+    });
 }
 
 void read_weather(TableReader& table, TroposphereParameters& p) {
@@ -97,11 +102,10 @@ void read_troposphere_truth(TableReader& table, TroposphereParameters& p) {
     });
     table.quantity("gradient_north_m", p.gradient_north, {-1, 1}, "per 1/(sin e tan e + 0.0032)");
     table.quantity("gradient_east_m", p.gradient_east, {-1, 1}, "per 1/(sin e tan e + 0.0032)");
-    table.quantity("residual_m", p.residual, {0, 10}, "σ of the wet delay at the zenith that wanders");
-    table.quantity("residual_time_s", p.residual_time, {1, 1e7}, "its correlation time");
-    table.quantity("walk_m_per_sqrt_h", p.walk, {0, 1}, "random walk of the wet zenith delay");
-    table.quantity("walk_in_rain_m_per_sqrt_h", p.walk_in_rain, {0, 1}, "the same in rain");
-    table.quantity("walk_in_thunderstorm_m_per_sqrt_h", p.walk_in_thunderstorm, {0, 1}, "the same in a thunderstorm");
+    table.quantity("residual_m", p.residual, {0, 10}, "σ of the wet delay at the zenith, a turbulent field");
+    table.quantity("residual_in_rain_m", p.residual_in_rain, {0, 10}, "the same in rain");
+    table.quantity("residual_in_thunderstorm_m", p.residual_in_thunderstorm, {0, 10}, "the same in a thunderstorm");
+    table.quantity("wind_mps", p.wind, {0, 100}, "by which this field drifts");
     table.number("thunderstorm_rain_mm_h", p.thunderstorm_rain_mm_h, {0, 1000}, "rain that makes it a thunderstorm");
 }
 

@@ -111,9 +111,10 @@ std::vector<NamedTerm> error_terms(ModernSettings& settings) {
     MeasurementParameters& m = settings.measurement;
     return {{"signal_in_space", &p.signal_in_space, "orbit and clock of the satellite against what it broadcasts"},
             {"ionosphere", &p.ionosphere, "delay of the true ionosphere, and with it the residual"},
-            {"ionosphere_residual", &p.ionosphere_residual, "how the day departs from the model of the truth"},
+            {"ionosphere_residual", &p.ionosphere_residual,
+             "how the day departs from the model of the truth, and disturbances that travel"},
             {"troposphere", &p.troposphere, "delay of the air"},
-            {"troposphere_residual", &p.troposphere_residual, "vapour that wanders"},
+            {"troposphere_residual", &p.troposphere_residual, "turbulent vapour that drifts by"},
             {"gas", &p.gas, "loss in oxygen and vapour"},
             {"clouds", &p.clouds, "loss in clouds"},
             {"rain", &p.rain, "loss in rain"},

@@ -203,6 +203,9 @@ IonosphereDelay::IonosphereDelay(IonosphereTruth model, const ModernPropagationP
                                  const ResidualReach& residual, std::uint64_t seed)
     : model_(std::move(model)),
       residual_(parameters.ionosphere_model, parameters.ionosphere_residual, seed),
+      waves_(parameters.ionosphere_model.waves,
+             noise_key(parameters.ionosphere_residual.seed.value_or(seed), "ionosphere_residual.waves")),
+      calm_(parameters.ionosphere_model.waves.content == Tecu(0)),
       reach_(residual),
       factor_(parameters.ionosphere.factor()),
       residual_factor_(parameters.ionosphere_residual.factor()) {}
@@ -210,12 +213,18 @@ IonosphereDelay::IonosphereDelay(IonosphereTruth model, const ModernPropagationP
 void IonosphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
     if (factor_ == 0) return;
     for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
-        arrival.iono_delay = model_(satellite, truth, first_carrier(arrival)) * factor_;
-        const bool departs = satellite.id.constellation == Constellation::galileo ? reach_.galileo : reach_.others;
-        if (residual_factor_ == 0 || !departs) return;
-        const double share = residual_.share(satellite.id, direction_of(satellite), truth.geodetic, truth.time);
+        const Hertz carrier = first_carrier(arrival);
+        const Metres model = model_(satellite, truth, carrier) * factor_;
+        arrival.iono_delay = model;
+        if (residual_factor_ == 0 || model == Metres(0)) return;
+        double departure = 0;
+        if (satellite.id.constellation == Constellation::galileo ? reach_.galileo : reach_.others)
+            departure = residual_.share(satellite.id, direction_of(satellite), truth.geodetic, truth.time);
+        Metres delay = model * (1 + residual_factor_ * departure);
+        if (!calm_ && stands_below({}, truth))
+            delay += ionosphere_group_delay(waves_.slant(satellite, truth), carrier) * (factor_ * residual_factor_);
         // However the day departs from the model, electrons never speed the code up.
-        arrival.iono_delay = arrival.iono_delay * std::max(1 + residual_factor_ * share, 0.0);
+        arrival.iono_delay = std::max(delay, Metres(0));
     });
 }
 

@@ -13,6 +13,7 @@
 #include "base/time/utc_time.hpp"
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
+#include "world/propagation/ionosphere_waves.hpp"
 #include "world/propagation/modern_effects.hpp"
 #include "world/propagation/modern_parameters.hpp"
 #include "world/propagation/per_satellite.hpp"
@@ -59,8 +60,8 @@ struct ResidualReach {
     bool others = false;
 };
 
-/// Writes the ionospheric delay of each arrival at the carrier of its first signal: that of the model, and the
-/// residual's share of it.
+/// Writes the ionospheric delay of each arrival at the carrier of its first signal: that of the model, the residual's
+/// share of it, and what travels through the ionosphere, wherever the model has one. The residual's factor scales both.
 class IonosphereDelay : public PropagationEffect {
 public:
     /// @param model not empty  @param residual by the parameters' choice
@@ -71,6 +72,8 @@ public:
 private:
     IonosphereTruth model_;
     IonosphereResidual residual_;
+    IonosphereWaves waves_;
+    bool calm_ = false;  // no waves
     ResidualReach reach_;
     double factor_, residual_factor_;
 };

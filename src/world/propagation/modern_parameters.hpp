@@ -42,6 +42,12 @@ enum class IonosphereModel {
 /// Whether something is done, where the program may decide by itself.
 enum class Choice { automatic, on, off };
 
+/// What travels through the ionosphere (IonosphereWaves), and how much of it.
+struct IonosphereWaveParameters {
+    Tecu content{0.35};          ///< 1 σ, vertical; 0: a calm ionosphere
+    MetresPerSecond speed{120};  ///< of waves and irregularities
+};
+
 /// The true ionosphere and how it departs from its model (MODELS.md 7.2).
 struct IonosphereParameters {
     IonosphereModel model = IonosphereModel::ntcm_g;
@@ -63,6 +69,7 @@ struct IonosphereParameters {
     Seconds common_time{7200};
     double single = 0.05;  ///< 1 σ of each satellite by itself, of the delay
     Seconds single_time{1800};
+    IonosphereWaveParameters waves{};  ///< beside it, whatever the receiver corrects with
 };
 
 /// Where the air at the antenna comes from (MODELS.md 7.3).
@@ -93,11 +100,11 @@ struct TroposphereParameters {
     Metres gradient_north{0};  ///< delay per 1/(sin e tan e + 0.0032)
     Metres gradient_east{0};
 
-    Metres residual{0.03};  ///< 1 σ at the zenith, Gauss-Markov
-    Seconds residual_time{10800};
-    Metres walk{0.005};                  ///< random walk of the zenith wet delay, m/√h
-    Metres walk_in_rain{0.015};          ///< m/√h, while it rains
-    Metres walk_in_thunderstorm{0.020};  ///< m/√h, from `thunderstorm_rain` or with a deck of that name
+    /// 1 σ of the wet delay at the zenith in a field over the globe (WetField); that of C_n = 2.4·10⁻⁷ m^(−1/3).
+    Metres residual{0.036};
+    Metres residual_in_rain{0.042};
+    Metres residual_in_thunderstorm{0.047};  ///< from `thunderstorm_rain` or with a deck of that name
+    MetresPerSecond wind{8};                 ///< by which the field drifts
     double thunderstorm_rain_mm_h = 50;
 };
 

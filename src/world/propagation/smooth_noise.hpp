@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -93,6 +94,48 @@ double smooth_noise(std::uint64_t key, const std::array<double, N>& cells) {
     (std::make_index_sequence<N>());
     return spline_noise(key, knots);
 }
+
+/// smooth_noise() of three coordinates where one place is asked for after another near to it: the numbers at the knots
+/// around the last one are remembered. What it returns depends on key and place alone.
+///
+/// State: those numbers.
+class NearbyNoise {
+public:
+    double at(std::uint64_t key, const std::array<double, 3>& cells) {
+        std::array<std::int64_t, 3> nearest;
+        std::array<std::array<double, 3>, 3> weights;
+        double square = 1;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double shifted = cells[i] + 0.5;
+            nearest[i] = static_cast<std::int64_t>(shifted);
+            nearest[i] -= static_cast<double>(nearest[i]) > shifted ? 1 : 0;  // rounded down, without std::floor's call
+            const double x = cells[i] - static_cast<double>(nearest[i]);
+            weights[i] = {(0.5 - x) * (0.5 - x) / 2, 0.75 - x * x, (0.5 + x) * (0.5 + x) / 2};
+            square *= 0.59375 + x * x * (1.5 * x * x - 0.75);  // the sum of the weights' squares
+        }
+        if (nearest != nearest_ || key != key_) remember(key, nearest);
+        return sum(weights) / std::sqrt(square);
+    }
+
+private:
+    void remember(std::uint64_t key, const std::array<std::int64_t, 3>& nearest);
+    [[nodiscard]] double sum(const std::array<std::array<double, 3>, 3>& weights) const {
+        double all = 0;
+        for (std::size_t x = 0; x < 3; ++x) {
+            double plane = 0;
+            for (std::size_t y = 0; y < 3; ++y) {
+                const double* line = &numbers_[9 * x + 3 * y];
+                plane += weights[1][y] * (weights[2][0] * line[0] + weights[2][1] * line[1] + weights[2][2] * line[2]);
+            }
+            all += weights[0][x] * plane;
+        }
+        return all;
+    }
+
+    std::uint64_t key_ = 0;
+    std::array<std::int64_t, 3> nearest_{std::numeric_limits<std::int64_t>::min()};  // no place has it
+    std::array<double, 27> numbers_{};
+};
 
 /// Probability that a standard normal number is below x.
 inline double normal_distribution(double x) { return 0.5 * std::erfc(-x * 0.70710678118654752); }

@@ -11,10 +11,13 @@
 namespace skyloop::inline world {
 namespace {
 
-constexpr Nanoseconds troposphere_spacing = std::chrono::seconds(60);
+// A ray's vapour is taken there: in the middle of the turbulent layer.
+constexpr Metres wet_height{1000};
+constexpr NoiseOctave wet_octaves[] = {{Metres(220), 0.02736},   {Metres(1320), 0.08112},   {Metres(7920), 0.18034},
+                                       {Metres(47520), 0.31329}, {Metres(285120), 0.52381}, {Metres(1710720), 0.76651}};
 constexpr double vapour_scale_height_m = 2000;  // of the reference atmosphere (P.835, 1.2)
 
-// The share of the vapour over the sea that still lies above: what wanders of the delay wanders with it.
+// The share of the vapour over the sea that still lies above: what departs of the delay goes with it.
 double vapour_above(MslHeight height) {
     return std::exp(-std::max(height.above_sea_level.value(), 0.0) / vapour_scale_height_m);
 }
@@ -66,11 +69,21 @@ double gradient_delay(const TroposphereParameters& parameters, const SkyDirectio
 
 }  // namespace
 
-Metres wet_delay_walk(const TroposphereParameters& parameters, const AtmosphereParameters& atmosphere) {
+Metres wet_delay_deviation(const TroposphereParameters& parameters, const AtmosphereParameters& atmosphere) {
     const bool tower = std::any_of(atmosphere.clouds.begin(), atmosphere.clouds.end(),
                                    [](const CloudDeck& deck) { return deck.kind == "thunderstorm"; });
-    if (tower || atmosphere.rain.rate_mm_h >= parameters.thunderstorm_rain_mm_h) return parameters.walk_in_thunderstorm;
-    return atmosphere.rain.rate_mm_h > 0 ? parameters.walk_in_rain : parameters.walk;
+    if (tower || atmosphere.rain.rate_mm_h >= parameters.thunderstorm_rain_mm_h)
+        return parameters.residual_in_thunderstorm;
+    return atmosphere.rain.rate_mm_h > 0 ? parameters.residual_in_rain : parameters.residual;
+}
+
+WetField::WetField(std::uint64_t key, MetresPerSecond wind) : field_(key, wet_octaves, wind) {}
+
+double WetField::at(const SatelliteInView& satellite, const TruthState& truth) {
+    // The sphere follows the ellipsoid's height, so that the layer does not lean.
+    const Metres radius = Metres(truth.position.vector().norm()) - truth.geodetic.height.above_ellipsoid + wet_height;
+    FieldMemory& memory = memories_.of(satellite.id, [](SatelliteId) { return FieldMemory{}; });
+    return field_.at(sphere_crossing(truth, satellite, radius), truth.time, memory);
 }
 
 SurfaceWeather troposphere_weather(const TroposphereParameters& parameters, const Geodetic& place, MslHeight height,
@@ -100,14 +113,12 @@ TroposphereDelay::TroposphereDelay(const ModernPropagationParameters& parameters
     : parameters_(parameters.troposphere_model),
       site_(std::move(site)),
       factor_(parameters.troposphere.factor()),
-      residual_factor_(parameters.troposphere_residual.factor()),
-      wander_({parameters_.residual.value(), parameters_.residual_time}, troposphere_spacing,
-              parameters.troposphere_residual.stream(seed, "troposphere_residual.wander")),
-      walk_(KnottedProcess::walk(wet_delay_walk(parameters_, atmosphere).value() / 60, troposphere_spacing,
-                                 parameters.troposphere_residual.stream(seed, "troposphere_residual.walk"))) {}
+      deviation_(wet_delay_deviation(parameters_, atmosphere) * parameters.troposphere_residual.factor()),
+      field_(noise_key(parameters.troposphere_residual.seed.value_or(seed), "troposphere_residual.field"),
+             parameters_.wind) {}
 
 void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
-    if (factor_ == 0 && residual_factor_ == 0) return;
+    if (factor_ == 0 && deviation_ == Metres(0)) return;
     const UtcTime utc = to_utc(truth.time, site_.leap_seconds);
     const AnnualPhase phase = AnnualPhase::of(utc);
     const MslHeight height = sea_level_height(truth.geodetic, site_.geoid);
@@ -115,18 +126,19 @@ void TroposphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const Truth
                                                    truth.geodetic.latitude, height);
     zenith.hydrostatic = zenith.hydrostatic * factor_;
     zenith.wet = zenith.wet * factor_;
-    if (residual_factor_ != 0)
-        zenith.wet += Metres(residual_factor_ * vapour_above(height) * (wander_.at(truth.time) + walk_.at(truth.time)));
+    const Metres deviation = deviation_ * vapour_above(height);
     const EpochMapping mapping = epoch_mapping(parameters_, truth.geodetic, height, utc);
     for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
         const SkyDirection direction{satellite.azimuth, std::max(satellite.elevation, Angle())};
+        ZenithDelay above = zenith;
+        if (deviation != Metres(0)) above.wet += deviation * field_.at(satellite, truth);
         Metres& delay = arrival.tropo_delay;
         if (parameters_.mapping == TroposphereMappingModel::cosecant) {
             // The very numbers of saastamoinen_delay(), bit by bit.
-            delay = zenith.total() / std::sin(above_horizon(direction.elevation).rad());
+            delay = above.total() / std::sin(above_horizon(direction.elevation).rad());
         } else {
             const TroposphereMapping m = mapping.at(direction.elevation);
-            delay = zenith.hydrostatic * m.hydrostatic + zenith.wet * m.wet;
+            delay = above.hydrostatic * m.hydrostatic + above.wet * m.wet;
         }
         if (factor_ != 0) delay += Metres(factor_ * gradient_delay(parameters_, direction));
     });

@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "signal_fault_run.hpp"
@@ -159,6 +162,46 @@ TEST(SatelliteFaults, AStormScalesAndTilts) {
     EXPECT_LT(tilted.satellites[5].iono_delay.value(), 1);  // at 203°: there is less, but no less than none
     EXPECT_GE(tilted.satellites[5].iono_delay.value(), 0);
     EXPECT_THAT(refusal_of("ionospheric_storm", {}), HasSubstr("no storm is told"));
+}
+
+// What a front of 300 mm/km over 50 km that stands on the meridian of 30° E and moves westwards adds overhead, so many
+// km east of the meridian, at this time and a second later.
+std::array<Arrival, 2> under_front(double east_km, double since_start) {
+    Fault front = signal_fault("ionospheric_storm", {{"gradient_mm_per_km", 300.},
+                                                     {"gradient_towards_deg", 90.},
+                                                     {"front_at", std::vector{46.5, 30.}},
+                                                     {"front_width_km", 50.},
+                                                     {"front_speed_mps", 200.}});
+    TruthState truth;
+    truth.geodetic = Geodetic::degrees(46.5, 30 + east_km / (111.195 * std::cos(46.5 * std::numbers::pi / 180)), 0);
+    Arrivals arrivals;
+    arrivals.satellites.resize(1);
+    std::array<Arrival, 2> both;
+    for (int i = 0; i < 2; ++i) {
+        truth.time = advanced(to_gps_time(2300, 200000), Seconds(since_start + i));
+        arrivals.satellites[0] = {};
+        arrivals.satellites[0].direction = {Angle(), Angle::degrees(90)};
+        front.arrivals(arrivals, FaultMoment{truth.time, Seconds(since_start + i), 1, &truth});
+        both[static_cast<std::size_t>(i)] = arrivals.satellites[0];
+    }
+    return both;
+}
+
+TEST(SatelliteFaults, AFrontIsOneForAllReceiversAndComesOn) {
+    const auto added = [](double east_km, double since_start) {
+        return under_front(east_km, since_start)[0].false_iono_delay.value();
+    };
+    EXPECT_NEAR(added(-30, 0), 0, 1e-9);
+    EXPECT_NEAR(added(25, 0), 7.5, 0.05);
+    EXPECT_NEAR(added(200, 0), 15, 1e-9);
+    EXPECT_NEAR(added(25, 100), 13.5, 0.05);
+    EXPECT_NEAR(added(-30, 250), 6, 0.05);
+    EXPECT_NEAR(under_front(25, 0)[1].false_iono_rate.value(), 0.06, 1e-6);
+    EXPECT_NEAR(under_front(200, 0)[1].false_iono_rate.value(), 0, 1e-9);
+    EXPECT_THAT(refusal_of("ionospheric_storm", {{"vertical_delay_m", 3.}, {"front_speed_mps", 3.}}),
+                HasSubstr("a front without gradient_mm_per_km"));
+    EXPECT_THAT(refusal_of("ionospheric_storm", {{"gradient_mm_per_km", 3.}, {"front_at", std::vector{95., 3.}}}),
+                HasSubstr("front_at"));
 }
 
 TEST(SatelliteFaults, ScintillationTearsThePhaseAndLeavesTheCode) {

@@ -34,6 +34,7 @@ ModernContext ionosphere_context() {
 IonosphereDelay ionosphere_effect(IonosphereModel model, const ModernContext& context = ionosphere_context()) {
     ModernPropagationParameters parameters;
     parameters.ionosphere_model.model = model;
+    parameters.ionosphere_model.waves.content = Tecu(0);
     auto truth = make_ionosphere_truth(parameters.ionosphere_model, context);
     if (!truth) throw std::runtime_error(truth.error().message);
     return {std::move(*truth), parameters, {}, 1};
@@ -358,11 +359,16 @@ TEST(IonosphereDelay, ItsTermsSwitchModelAndResidual) {
         IonosphereDelay effect(std::move(*made), parameters, {false, residual_wanted}, 5);
         return test::after(effect, sky, truth).satellites[2].iono_delay.value();
     };
-    const double model = delay(false, {}, {});
+    const ErrorTerm off{false, 1, {}};
+    const double model = delay(false, {}, off), waves = delay(false, {}, {}) - model;
     EXPECT_NE(delay(true, {}, {}), model);
+    EXPECT_NE(waves, 0);
+    EXPECT_NEAR(waves, 0, 1);
+    EXPECT_NEAR(delay(false, {}, {true, 2, {}}) - model, 2 * waves, 1e-9);
+    EXPECT_NEAR(delay(false, {true, 2, {}}, {}), 2 * (model + waves), 1e-9);
     EXPECT_EQ(delay(true, {}, {false, 1, {}}), model);
     EXPECT_EQ(delay(true, {false, 1, {}}, {}), 0);
-    EXPECT_NEAR(delay(false, {true, 0.5, {}}, {}), model / 2, 1e-12);
+    EXPECT_NEAR(delay(false, {true, 0.5, {}}, off), model / 2, 1e-12);
     EXPECT_NEAR(delay(true, {}, {true, 0.5, {}}) - model, (delay(true, {}, {}) - model) / 2, 1e-9);
 }
 

@@ -331,7 +331,6 @@ TEST(KeyCatalogue, TellsUnitsBySuffixes) {
     EXPECT_EQ(key_unit("noise_figure_db"), "dB");
     EXPECT_EQ(key_unit("canopy_db_per_m"), "dB/m");
     EXPECT_EQ(key_unit("vapour_db_per_km_per_g_m3"), "dB/km per g/m³");
-    EXPECT_EQ(key_unit("walk_in_rain_m_per_sqrt_h"), "m/√h");
     EXPECT_EQ(key_unit("frequency_per_k"), "1/K");
     EXPECT_EQ(key_unit("seed"), "");
 }
