@@ -162,7 +162,7 @@ const Observations& NavigationEngine::State::corrected(const Observations& obser
     constexpr int enough = 4;  // satellites for a position
     corrected_ = CorrectionState::none;
     reference_.reset();
-    if (corrections.at_most == CorrectionState::none || !corrections.reference ||
+    if (corrections.at_most == CorrectionState::none || !corrections.reference || corrections.reference->moves ||
         reference_age(*corrections.reference) > corrections.differential_timeout)
         return observations;
     corrected_observations_ = observations;
@@ -193,9 +193,20 @@ void NavigationEngine::State::solve_baseline(const EpochSolution& epoch, const O
 
 std::optional<RelativePosition> NavigationEngine::State::relate(const Observations& observations,
                                                                 const ReferenceStation& base) {
-    if (!base.position || !position_ || usable_.empty()) return std::nullopt;
-    const auto solution = pair_.solve({time_, observations, base, *position_, usable_, true}, transmitters());
-    return solution ? std::optional(relative_position(*solution, base)) : std::nullopt;
+    if (!position_ || usable_.empty()) return std::nullopt;
+    pair_.remember(time_, observations, usable_, *position_);
+    return pair_.solve(base, transmitters());
+}
+
+// From a base that moves the vector alone is exact: the place stays as good as this receiver's own.
+void NavigationEngine::State::solve_vector(const Observations& observations, const Corrections& corrections, Fix& fix) {
+    relative_.reset();
+    if (!fix.has_position() || !corrections.reference || corrections.at_most < CorrectionState::rtk_float) return;
+    const ReferenceStation& reference = *corrections.reference;
+    if (carrier_) relative_ = relative_position(*carrier_, reference);
+    if (!reference.moves) return;
+    relative_ = relate(observations, reference);
+    fix.type = pair_.type_at(time_).value_or(fix.type);
 }
 
 Fix NavigationEngine::State::solve(const Observations& observations, const ReceiverSettings& settings) {
@@ -222,6 +233,7 @@ Fix NavigationEngine::State::solve(const Observations& observations, const Recei
         fill_coasting(settings, fix);
         if (fix.type == FixType::none) noise_.reset();
     }
+    solve_vector(observations, settings.corrections, fix);
     // What is carried on is carried on from the last solution.
     if (epoch.point || fix.type == FixType::none) last_ = fix;
     const auto place = epoch.time_only ? std::optional(to_ecef(*parameters_.fixed_position)) : position_;
@@ -246,6 +258,7 @@ std::optional<RelativePosition> NavigationEngine::relate(const Observations& obs
                                                          const ReferenceStation& base) {
     return state_->relate(observations, base);
 }
-const std::optional<BaselineSolution>& NavigationEngine::baseline() const { return state_->baseline(); }
+std::optional<FixType> NavigationEngine::pair_type() const { return state_->pair_type(); }
+const std::optional<RelativePosition>& NavigationEngine::relative() const { return state_->relative(); }
 
 }  // namespace skyloop::inline receiver

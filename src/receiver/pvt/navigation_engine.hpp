@@ -7,9 +7,9 @@
 #include "base/geo/geodetic.hpp"
 #include "base/geo/geoid.hpp"
 #include "base/time/utc_time.hpp"
-#include "receiver/pvt/baseline_solver.hpp"
 #include "receiver/pvt/navigation_parameters.hpp"
 #include "receiver/pvt/transmitter.hpp"
+#include "world/flow/epoch.hpp"
 #include "world/flow/fix.hpp"
 #include "world/flow/observations.hpp"
 #include "world/flow/receiver_settings.hpp"
@@ -42,11 +42,14 @@ public:
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
     /// Whether the last fix has a velocity that was measured: without Dopplers it is told as 0.
     [[nodiscard]] bool velocity_known() const;
-    /// The vector from the base of a moving pair at the last epoch, by what both measured.
+    /// The vector from the base of a moving pair at the last epoch, by what both measured then.
     /// @param observations of that epoch @return nothing without a position of both, or too few common signals
     std::optional<RelativePosition> relate(const Observations& observations, const ReferenceStation& base);
-    /// From the reference station to this receiver at the last epoch, by carrier phases; nothing where there were none.
-    [[nodiscard]] const std::optional<BaselineSolution>& baseline() const;
+    /// What the last vector of the pair makes of a fix, for ten seconds.
+    [[nodiscard]] std::optional<FixType> pair_type() const;
+    /// From the reference station of the corrections to this receiver, by carrier phases, as it is told at the last
+    /// epoch: of a moving one at the instant of its last epoch. Nothing where there is no new one.
+    [[nodiscard]] const std::optional<RelativePosition>& relative() const;
 
 private:
     class State;

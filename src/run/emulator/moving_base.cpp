@@ -25,16 +25,7 @@ MovingBase::MovingBase(std::uint64_t seed, const BaselineAccuracy& accuracy)
       floating_(axes(accuracy.floating, seed, "float")) {}
 
 // The ambiguities are searched anew.
-void MovingBase::lose() {
-    both_since_.reset();
-    measured_fixed_.reset();
-}
-
-void MovingBase::take(const Trace& rover) {
-    last_ = rover.truth.time;
-    const auto& vector = rover.epoch.relative;
-    measured_fixed_ = vector ? std::optional(vector->fixed) : std::nullopt;
-}
+void MovingBase::lose() { both_since_.reset(); }
 
 void MovingBase::hold(const Trace& rover) {
     const bool old = last_ && difference(rover.truth.time, *last_) > accuracy_.held_without_base;
@@ -42,7 +33,6 @@ void MovingBase::hold(const Trace& rover) {
 }
 
 std::optional<FixType> MovingBase::fix_type() const {
-    if (measured_fixed_) return *measured_fixed_ ? FixType::rtk_fixed : FixType::rtk_float;
     if (!last_ || !both_since_) return std::nullopt;
     return difference(*last_, *both_since_) >= accuracy_.time_to_fix ? FixType::rtk_fixed : FixType::rtk_float;
 }

@@ -20,9 +20,9 @@ struct BaselineAccuracy {
     Seconds held_without_base{10};                     ///< ambiguities, after the base's last epoch (RECEIVER.md 4.12)
 };
 
-/// Keeps the solution of a moving base's rover between epochs of its base. Of sensor models, which measure nothing, it
-/// also makes it: the true vector plus three first-order Gauss-Markov processes. Their numbers: ZED-F9P data sheet, RTK
-/// 1 cm + 1 ppm CEP, heading 0.4° at 1 m, which 5 mm each axis give.
+/// Makes the vector of a pair that measures nothing, from the truth and an error: the true vector plus three
+/// first-order Gauss-Markov processes. Their numbers: ZED-F9P data sheet, RTK 1 cm + 1 ppm CEP, heading 0.4° at 1 m,
+/// which 5 mm each axis give.
 ///
 /// State: the errors, the base's last epoch, and since when both receivers have had a fix. All numbers are of streams
 /// of their own.
@@ -30,9 +30,7 @@ class MovingBase {
 public:
     explicit MovingBase(std::uint64_t seed, const BaselineAccuracy& accuracy = {});
 
-    /// A vector that was measured, or could not be.
-    void take(const Trace& rover);
-    /// The vector of sensor models at one instant; instants come in ascending order. Nothing while one of the two has
+    /// The vector at one instant; instants come in ascending order. Nothing while one of the two has
     /// no fix of its own.
     /// @param base,rover of the same instant
     std::optional<RelativePosition> relate(const Trace& base, const Trace& rover);
@@ -48,7 +46,6 @@ private:
     BaselineAccuracy accuracy_;
     std::array<GaussMarkov, 3> fixed_, floating_;  // north, east, down
     std::optional<GpsTime> last_, both_since_;     // the base's last epoch; the first of those that both had a fix at
-    std::optional<bool> measured_fixed_;           // of the last vector that was measured
 };
 
 }  // namespace skyloop::inline run

@@ -17,8 +17,7 @@ void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings&
     trace.epoch.observations = std::move(measured.observations);
     if (faults != nullptr) faults->edit_observations(trace);
     trace.epoch.fix = receiver.navigation.solve(trace.epoch.observations, settings);
-    if (const auto& baseline = receiver.navigation.baseline(); baseline && trace.epoch.fix.has_position())
-        trace.epoch.relative = relative_position(*baseline, *settings.corrections.reference);
+    trace.epoch.relative = receiver.navigation.relative();
 }
 
 // Of a receiver that is stopped: not even dead reckoning.
@@ -68,16 +67,18 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaul
     return trace;
 }
 
-void Simulation::relate(Trace& rover, const Trace& base) {
+void Simulation::relate(Trace& rover, const Trace* base) {
     auto* receiver = std::get_if<MeasuringReceiver>(&parts_.fix_maker);
-    if (receiver == nullptr) return;
-    const Epoch& epoch = base.epoch;
-    ReferenceStation station;
-    if (epoch.fix.has_position()) station.position = to_ecef(epoch.fix.position);
-    station.moves = true;
-    station.glonass_biases_known = true;
-    station.epoch = {epoch.observations.receive_time, epoch.observations.signals};
-    rover.epoch.relative = receiver->navigation.relate(rover.epoch.observations, station);
+    if (receiver == nullptr || !rover.epoch.fix.has_position()) return;
+    if (base != nullptr) {
+        ReferenceStation station;
+        if (base->epoch.fix.has_position()) station.position = to_ecef(base->epoch.fix.position);
+        station.moves = true;
+        station.glonass_biases_known = true;
+        station.epoch = {base->epoch.observations.receive_time, base->epoch.observations.signals};
+        rover.epoch.relative = receiver->navigation.relate(rover.epoch.observations, station);
+    }
+    rover.epoch.fix.type = receiver->navigation.pair_type().value_or(rover.epoch.fix.type);
 }
 
 }  // namespace skyloop::inline run

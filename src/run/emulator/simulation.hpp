@@ -46,8 +46,9 @@ public:
     /// and every random number go on. @param settings what the receiver is configured to do
     /// @param faults edit what arrives, what is measured and what is solved; null: none
     Trace run(GpsTime time, const ReceiverSettings& settings, ActiveFaults* faults = nullptr);
-    /// The vector of a moving pair from what both of its receivers measured at one instant, the last one of run().
-    void relate(Trace& rover, const Trace& base);
+    /// Adds the vector from the base of a moving pair, by what both measured at the last instant of run(), and the type
+    /// of fix that it makes. @param base null: it has no epoch then, and the type stays for a while
+    void relate(Trace& rover, const Trace* base);
     /// What stands above an antenna, and nothing of what reaches it.
     [[nodiscard]] SkyView view(const TruthState& truth) const;
     [[nodiscard]] const NavigationSource& navigation() const { return *parts_.navigation; }

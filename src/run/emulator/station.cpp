@@ -220,14 +220,11 @@ Trace Station::observe() {
 
 void Station::relate(Trace& trace, const Trace* base) {
     if (!parts_.moving_base) return;
-    if (base && trace.measures) {
-        parts_.simulation.relate(trace, *base);
-        parts_.moving_base->take(trace);
-    } else if (base) {
+    if (trace.measures) return parts_.simulation.relate(trace, base);
+    if (base)
         trace.epoch.relative = parts_.moving_base->relate(*base, trace);
-    } else {
+    else
         parts_.moving_base->hold(trace);
-    }
     // The vector is exact, the place is only as good as the base's own: its accuracies stay.
     trace.epoch.fix.type = parts_.moving_base->fix_type().value_or(trace.epoch.fix.type);
 }

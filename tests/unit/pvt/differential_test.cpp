@@ -64,7 +64,7 @@ public:
     [[nodiscard]] Eigen::Vector3d error(const Fix& fix) const {
         return to_ecef(fix.position).vector() - rover_.position;
     }
-    [[nodiscard]] const std::optional<BaselineSolution>& baseline() const { return engine_->baseline(); }
+    [[nodiscard]] const std::optional<RelativePosition>& relative() const { return engine_->relative(); }
     void tell_base_at(const Position<Ecef>& place) { told_ = place; }
     Corrections& corrections() { return settings_.corrections; }
 
@@ -112,8 +112,9 @@ TEST(Differential, WholeAmbiguitiesMakeItExactToThePhase) {
         EXPECT_EQ(fix.type, FixType::rtk_fixed) << apart_km;
         EXPECT_LT(pair.error(fix).norm(), 0.03) << apart_km;
         EXPECT_LT(fix.horizontal_accuracy, Metres(0.03)) << apart_km;
-        EXPECT_GE(pair.baseline()->ratio, 3);
-        EXPECT_NEAR(pair.baseline()->vector.length().value(), 1000 * apart_km, 25);
+        EXPECT_GE(pair.relative()->ratio, 3);
+        EXPECT_NEAR(pair.relative()->east_m, 1000 * apart_km, 0.05 + 1e-5 * apart_km * apart_km);
+        EXPECT_NEAR(pair.relative()->down_m, -20, 0.1 + 0.08 * apart_km * apart_km);
     }
 }
 
@@ -132,7 +133,7 @@ TEST(Differential, CodesAloneMakeItDifferential) {
     EXPECT_EQ(fix.type, FixType::dgnss);
     EXPECT_LT(pair.error(fix).norm(), 3);
     EXPECT_GT(fix.horizontal_accuracy, Metres(0.1));
-    EXPECT_FALSE(pair.baseline());
+    EXPECT_FALSE(pair.relative());
     pair.corrections().at_most = CorrectionState::differential;
     EXPECT_EQ(pair.after(5).type, FixType::dgnss) << "a receiver without RTK";
 }

@@ -9,6 +9,7 @@
 #include "receiver/pvt/expected_error.hpp"
 #include "receiver/pvt/integrity.hpp"
 #include "receiver/pvt/motion_check.hpp"
+#include "receiver/pvt/moving_pair.hpp"
 #include "receiver/pvt/navigation_engine.hpp"
 #include "receiver/pvt/observation_equations.hpp"
 #include "receiver/pvt/position_filter.hpp"
@@ -32,7 +33,8 @@ public:
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
     std::optional<RelativePosition> relate(const Observations& observations, const ReferenceStation& base);
     [[nodiscard]] bool velocity_known() const { return velocity_known_; }
-    [[nodiscard]] const std::optional<BaselineSolution>& baseline() const { return carrier_; }
+    [[nodiscard]] std::optional<FixType> pair_type() const { return pair_.type_at(time_); }
+    [[nodiscard]] const std::optional<RelativePosition>& relative() const { return relative_; }
 
 private:
     // Of the last fix in three dimensions.
@@ -57,6 +59,7 @@ private:
     void fill_coasting(const ReceiverSettings& settings, Fix& fix);
     const Observations& corrected(const Observations& observations, const Corrections& corrections);
     void solve_baseline(const EpochSolution& epoch, const Observations& observations, const Corrections& corrections);
+    void solve_vector(const Observations& observations, const Corrections& corrections, Fix& fix);
     [[nodiscard]] Seconds reference_age(const ReferenceStation& reference) const {
         return difference(time_, reference.epoch.time);
     }
@@ -79,10 +82,12 @@ private:
     EquationMaker maker_;
     MotionCheck motion_;
     NoiseScale noise_;
-    BaselineSolver baseline_, pair_;           // against a reference station, and against a moving base
-    std::set<SatelliteId> usable_;             // of the last solution
-    Observations corrected_observations_;      // of this epoch: its equations point to them
-    std::optional<BaselineSolution> carrier_;  // by carrier phases, of this epoch
+    BaselineSolver baseline_;
+    MovingPair pair_;
+    std::set<SatelliteId> usable_;              // of the last solution
+    Observations corrected_observations_;       // of this epoch: its equations point to them
+    std::optional<BaselineSolution> carrier_;   // by carrier phases, of this epoch
+    std::optional<RelativePosition> relative_;  // the vector that is told at this epoch
 
     std::optional<int> restarts_;
     GpsTime time_;                           // true, as well as the receiver can tell
