@@ -5,6 +5,7 @@
 
 #include "firmware/core/corrections.hpp"
 #include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_legacy.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 #include "require.hpp"
@@ -28,6 +29,10 @@ void read(skyloop::ByteSpan frame) {
     if (const auto header = decode_msm_header(*message)) {
         const Bytes again = encode(*header);
         require(decode_msm_header(*parse_rtcm3(again)) == header);
+    }
+    if (const auto observables = decode_legacy(*message)) {
+        const Bytes once = encode(*observables);
+        if (!once.empty()) require(encode(*decode_legacy(*parse_rtcm3(once))) == once);
     }
 }
 

@@ -7,6 +7,7 @@
 #include "base/core/bytes.hpp"
 #include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_legacy.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
@@ -27,6 +28,25 @@ DecodedValue cell_value(const Rtcm3MsmCell& cell) {
     fields.push_back({"lock_s", {cell.lock_s}});
     fields.push_back({"half_cycle_unknown", {std::uint64_t(cell.half_cycle_unknown)}});
     fields.push_back({"cno_dbhz", {cell.cno_dbhz}});
+    return {std::move(fields)};
+}
+
+void list_carrier(const Rtcm3LegacyCarrier& carrier, std::string_view name, int number, std::vector<DecodedField>& to) {
+    const auto named = [&](std::string_view quantity) { return fmt::format("{}_{}", name, quantity); };
+    to.push_back({named("code"), {std::uint64_t(carrier.code)}});
+    to.push_back({named("pseudorange_m"), rounded(carrier.range_m)});
+    to.push_back({named("phase_range_m"), rounded(carrier.phase_range_m)});
+    to.push_back({named("lock_s"), {carrier.lock_s}});
+    if (is_extended_legacy(number)) to.push_back({named("cno_dbhz"), {carrier.cno_dbhz}});
+}
+
+// The basic messages tell ranges and phases modulo the light's way in one or two milliseconds.
+DecodedValue legacy_value(const Rtcm3LegacySatellite& satellite, int number) {
+    std::vector<DecodedField> fields;
+    fields.push_back({"satellite", {std::uint64_t(satellite.satellite)}});
+    if (number >= 1009) fields.push_back({"frequency_channel", {std::int64_t{satellite.frequency_channel}}});
+    list_carrier(satellite.l1, "l1", number, fields);
+    if (satellite.l2) list_carrier(*satellite.l2, "l2", number, fields);
     return {std::move(fields)};
 }
 
@@ -165,6 +185,23 @@ void list_observables(int number, RtcmLister& to) {
         to.scaled<"time_of_day_s*1e-3">(27, false);
     to.number("more_follow", 1);
     to.number("satellites", 5);
+    to.number("divergence_free", 1);
+    to.number("smoothing_interval", 3);
+}
+
+// The cells of observations that are there as a whole.
+void list_cells(int number, ByteSpan payload, std::vector<DecodedField>& to) {
+    const Rtcm3Message message{number, {}, 0, payload};
+    std::vector<DecodedValue> cells;
+    if (const auto observed = decode_msm(message))
+        for (const Rtcm3MsmCell& cell : observed->cells)
+            cells.push_back(cell_value(cell));
+    else if (const auto observables = decode_legacy(message))
+        for (const Rtcm3LegacySatellite& satellite : observables->satellites)
+            cells.push_back(legacy_value(satellite, number));
+    else
+        return;
+    to.push_back({"cells", {std::move(cells)}});
 }
 
 bool list_known(int number, RtcmLister& to) {
@@ -203,12 +240,7 @@ void list_rtcm3(ByteSpan payload, DecodedMessage& message) {
     message.name = rtcm3_name(number);
     if (list_known(number, lister)) {
         message.fields = lister.take();
-        if (const auto observed = decode_msm({number, {}, 0, payload})) {
-            std::vector<DecodedValue> cells;
-            for (const Rtcm3MsmCell& cell : observed->cells)
-                cells.push_back(cell_value(cell));
-            message.fields.push_back({"cells", {std::move(cells)}});
-        }
+        list_cells(number, payload, message.fields);
     } else {
         message.payload.assign(payload.begin(), payload.end());
     }

@@ -6,6 +6,7 @@
 #include "base/core/bytes.hpp"
 #include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_legacy.hpp"
 
 namespace skyloop {
 namespace {
@@ -84,13 +85,17 @@ TEST(Rtcm3Listing, AntennasAndReceiversAreNamedAsFarAsTheMessageDoes) {
 
 TEST(Rtcm3Listing, ObservablesAreDatedAsTheirSystemCounts) {
     const auto head = [](unsigned number, int width) {
-        return Rtcm3Writer(number).bits(7, 12).bits(86399123, width).bits(1, 1).bits(9, 5).bytes();
+        return Rtcm3Writer(number).bits(7, 12).bits(86399123, width).bits(1, 1).bits(9, 5).bits(11, 4).bytes();
     };
     for (const unsigned gps : {1001U, 1002U, 1003U, 1004U})
-        EXPECT_NE(listed(head(gps, 30)).find("station=7 tow_s=86399.1230 more_follow=1 satellites=9"),
-                  std::string::npos);
+        EXPECT_NE(
+            listed(head(gps, 30))
+                .find("station=7 tow_s=86399.1230 more_follow=1 satellites=9 divergence_free=1 smoothing_interval=3"),
+            std::string::npos);
     for (const unsigned glonass : {1009U, 1010U, 1011U, 1012U})
-        EXPECT_NE(listed(head(glonass, 27)).find("station=7 time_of_day_s=86399.1230 more_follow=1 satellites=9"),
+        EXPECT_NE(listed(head(glonass, 27))
+                      .find("station=7 time_of_day_s=86399.1230 more_follow=1 satellites=9 divergence_free=1 "
+                            "smoothing_interval=3"),
                   std::string::npos);
     EXPECT_NE(listed(head(1003, 30)).find("1003 GPS L1 and L2 observables, basic: "), std::string::npos);
     EXPECT_NE(listed(head(1009, 27)).find("1009 GLONASS L1 observables, basic: "), std::string::npos);
@@ -128,6 +133,23 @@ TEST(Rtcm3Listing, MsmTellTheirCells) {
     EXPECT_NE(line.find(" phase_range_m=- range_rate_mps=- lock_s=1.024 half_cycle_unknown=0 cno_dbhz=43}]"),
               std::string::npos)
         << line;
+}
+
+TEST(Rtcm3Listing, ObservablesTellTheirCells) {
+    Rtcm3LegacyObservables m{1012, 7, 0, false, {}, true, 3};
+    m.satellites.resize(1);
+    m.satellites[0] = {9, -2, {0, 2.2e7, 2.2e7 + 1.5, 0.19, 3, 43}, Rtcm3LegacyCarrier{1, 2.2e7, {}, 0.24, 0, 40.25}};
+    const Bytes frame = encode(m);
+    DecodedMessage message;
+    list_rtcm3(parse_rtcm3(frame)->payload, message);
+    const std::string line = text_line(message);
+    EXPECT_NE(line.find("satellites=1 divergence_free=1 smoothing_interval=3 cells=[{satellite=9 frequency_channel=-2 "
+                        "l1_code=0 l1_pseudorange_m=21999999.99"),
+              std::string::npos)
+        << line;
+    EXPECT_NE(line.find(" l1_lock_s=3 l1_cno_dbhz=43 l2_code=1 l2_pseudorange_m=21999999.99"), std::string::npos)
+        << line;
+    EXPECT_NE(line.find(" l2_phase_range_m=- l2_lock_s=0 l2_cno_dbhz=40.25}]"), std::string::npos) << line;
 }
 
 TEST(Rtcm3Listing, SatellitesOfEphemeridesHaveTheWidthOfTheirSystem) {
