@@ -5,8 +5,11 @@
 #include <string>
 
 #include "base/core/bytes.hpp"
+#include "detail/rtcm3_ephemeris_fields.hpp"
 #include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_descriptors.hpp"
+#include "receiver/protocol/rtcm3_ephemeris.hpp"
 #include "receiver/protocol/rtcm3_legacy.hpp"
 
 namespace skyloop::inline receiver {
@@ -50,12 +53,56 @@ DecodedValue legacy_value(const Rtcm3LegacySatellite& satellite, int number) {
     return {std::move(fields)};
 }
 
-// A text with its length in the byte before (RTCM 10403.3, DF029 and its like).
-std::string counted_text(BitReader& reader) {
-    std::string characters;
-    for (std::uint64_t left = reader.get(8); left > 0 && reader.ok(); --left)
-        characters += static_cast<char>(reader.get(8));
-    return characters;
+// The fields of an ephemeris under their names (detail/rtcm3_ephemeris_fields.hpp).
+class EphemerisLister {
+public:
+    explicit EphemerisLister(ByteSpan payload) : reader_(payload) { reader_.skip(12); }
+    void whole(std::string_view name, std::int64_t&, int width) { add(name, {reader_.get(width)}); }
+    void time(std::string_view name, std::int64_t&, int width, int step) {
+        add(name, {reader_.get(width) * static_cast<std::uint64_t>(step)});
+    }
+    void scaled(std::string_view name, double&, int width, double step) {
+        add(name, {static_cast<double>(reader_.get_signed(width)) * step});
+    }
+    void unsigned_scaled(std::string_view name, double&, int width, double step) {
+        add(name, {static_cast<double>(reader_.get(width)) * step});
+    }
+    void circle(std::string_view name, double& value) { scaled(name, value, 32, sc * step(-31)); }
+    void magnitude(std::string_view name, double&, int width, double step) {
+        const bool negative = reader_.get(1) != 0;
+        add(name, {static_cast<double>(reader_.get(width - 1)) * (negative ? -step : step)});
+    }
+    void skip(int width) { reader_.skip(static_cast<std::size_t>(width)); }
+    [[nodiscard]] bool complete() const { return reader_.ok(); }
+    std::vector<DecodedField> take() { return std::move(fields_); }
+
+private:
+    void add(std::string_view name, DecodedValue value) { fields_.push_back({std::string(name), std::move(value)}); }
+
+    BitReader reader_;
+    std::vector<DecodedField> fields_;
+};
+
+std::optional<std::vector<DecodedField>> listed_ephemeris(int number, ByteSpan payload) {
+    EphemerisLister lister(payload);
+    KeplerFields kepler;
+    GlonassFields glonass;
+    if (!ephemeris_fields(lister, number, kepler, glonass) || !lister.complete()) return std::nullopt;
+    return lister.take();
+}
+
+std::optional<std::vector<DecodedField>> listed_descriptors(const Rtcm3Message& message) {
+    const auto told = decode_descriptors(message);
+    if (!told) return std::nullopt;
+    std::vector<DecodedField> fields{{"station", {std::uint64_t(told->station)}},
+                                     {"antenna", {told->antenna}},
+                                     {"antenna_setup", {std::uint64_t(told->antenna_setup)}}};
+    if (told->number != 1007) fields.push_back({"antenna_serial", {told->antenna_serial}});
+    if (told->number != 1033) return fields;
+    fields.push_back({"receiver", {told->receiver}});
+    fields.push_back({"firmware", {told->firmware}});
+    fields.push_back({"receiver_serial", {told->receiver_serial}});
+    return fields;
 }
 
 class RtcmLister {
@@ -74,7 +121,6 @@ public:
         fields_.push_back({std::string(format.name), is_signed ? scaled_value(reader_.get_signed(width), format)
                                                                : scaled_value(reader_.get(width), format)});
     }
-    void text(std::string_view name) { fields_.push_back({std::string(name), {counted_text(reader_)}}); }
     /// The numbers of the bits that are set, the first being 1.
     void mask(std::string_view name, unsigned bits) {
         std::vector<DecodedValue> set;
@@ -108,7 +154,7 @@ struct Rtcm3Name {
     int number;
     std::string_view name;
 };
-constexpr std::array<Rtcm3Name, 13> rtcm3_names{{
+constexpr std::array<Rtcm3Name, 14> rtcm3_names{{
     {1005, "station position"},
     {1006, "station position and antenna height"},
     {1007, "antenna"},
@@ -116,6 +162,7 @@ constexpr std::array<Rtcm3Name, 13> rtcm3_names{{
     {1019, "GPS ephemeris"},
     {1020, "GLONASS ephemeris"},
     {1033, "receiver and antenna"},
+    {1041, "NavIC ephemeris"},
     {1042, "BeiDou ephemeris"},
     {1044, "QZSS ephemeris"},
     {1045, "Galileo F/NAV ephemeris"},
@@ -165,17 +212,6 @@ void list_station(int number, RtcmLister& to) {
     if (number == 1006) to.scaled<"antenna_height_m*1e-4">(16, false);
 }
 
-void list_descriptors(int number, RtcmLister& to) {
-    to.number("station", 12);
-    to.text("antenna");
-    to.number("antenna_setup", 8);
-    if (number == 1008 || number == 1033) to.text("antenna_serial");
-    if (number != 1033) return;
-    to.text("receiver");
-    to.text("firmware");
-    to.text("receiver_serial");
-}
-
 // Legacy observables: the head alone (RTCM 10403.3, tables 3.5-1 and 3.5-9).
 void list_observables(int number, RtcmLister& to) {
     to.number("station", 12);
@@ -209,12 +245,8 @@ bool list_known(int number, RtcmLister& to) {
         list_msm(number, to);
     } else if (number == 1005 || number == 1006) {
         list_station(number, to);
-    } else if (number == 1007 || number == 1008 || number == 1033) {
-        list_descriptors(number, to);
     } else if (is_gps_observables(number) || is_glonass_observables(number)) {
         list_observables(number, to);
-    } else if (number == 1019 || number == 1020 || (number >= 1042 && number <= 1046 && number != 1043)) {
-        to.number("satellite", number == 1044 ? 4 : 6);
     } else if (number == 1230) {
         to.number("station", 12);
     } else if (number == 4072) {
@@ -238,7 +270,11 @@ void list_rtcm3(ByteSpan payload, DecodedMessage& message) {
     lister.skip(12);
     message.id = fmt::format("{}", number);
     message.name = rtcm3_name(number);
-    if (list_known(number, lister)) {
+    if (auto descriptors = listed_descriptors({number, {}, 0, payload})) {
+        message.fields = std::move(*descriptors);
+    } else if (auto ephemeris = listed_ephemeris(number, payload)) {
+        message.fields = std::move(*ephemeris);
+    } else if (list_known(number, lister)) {
         message.fields = lister.take();
         list_cells(number, payload, message.fields);
     } else {

@@ -152,9 +152,49 @@ TEST(Rtcm3Listing, ObservablesTellTheirCells) {
     EXPECT_NE(line.find(" l2_phase_range_m=- l2_lock_s=0 l2_cno_dbhz=40.25}]"), std::string::npos) << line;
 }
 
-TEST(Rtcm3Listing, SatellitesOfEphemeridesHaveTheWidthOfTheirSystem) {
-    EXPECT_EQ(listed(Rtcm3Writer(1019).bits(31, 6).bytes()), "1019 GPS ephemeris: satellite=31");
-    EXPECT_EQ(listed(Rtcm3Writer(1044).bits(9, 4).bytes()), "1044 QZSS ephemeris: satellite=9");
+// Whole, of zeros but for what is put first.
+Bytes filled(Rtcm3Writer writer, std::size_t size) {
+    Bytes bytes = writer.bytes();
+    bytes.resize(size);
+    return bytes;
+}
+
+TEST(Rtcm3Listing, EphemeridesTellTheirFieldsInTheirUnits) {
+    // DF009, DF076, DF077, DF078, DF079, DF071, DF081.
+    const Bytes gps = filled(
+        Rtcm3Writer(1019).bits(31, 6).bits(337, 10).bits(1, 4).bits(1, 2).bits(0, 14).bits(9, 8).bits(32400, 16), 61);
+    EXPECT_TRUE(
+        listed(gps).starts_with("1019 GPS ephemeris: satellite=31 week=337 accuracy=1 codes_on_l2=1 "
+                                "idot_radps=0.0000 iode=9 toc_s=518400 af2_sps2=0.0000"))
+        << listed(gps);
+    // DF429, DF430.
+    const Bytes qzss = filled(Rtcm3Writer(1044).bits(9, 4).bits(1, 16), 61);
+    EXPECT_TRUE(listed(qzss).starts_with("1044 QZSS ephemeris: satellite=9 toc_s=16 ")) << listed(qzss);
+    // DF038, DF040, DF104 to DF111: minus 1000 km/s · 2^-20.
+    const Bytes glonass = filled(Rtcm3Writer(1020)
+                                     .bits(24, 6)
+                                     .bits(2, 5)
+                                     .bits(3, 2)
+                                     .bits(1, 2)
+                                     .bits(23, 5)
+                                     .bits(59, 6)
+                                     .bits(1, 1)
+                                     .bits(0, 1)
+                                     .bits(1, 1)
+                                     .bits(95, 7)
+                                     .bits(0x8003E8, 24),
+                                 45);
+    EXPECT_TRUE(listed(glonass).starts_with(
+        "1020 GLONASS ephemeris: satellite=24 channel=2 almanac_health=1 almanac_health_told=1 p1=1 tk_hours=23 "
+        "tk_minutes=59 tk_half_minute=1 malfunction=0 p2=1 tb_s=85500 velocity_x_mps=-0.9537 x_m=0.0000"))
+        << listed(glonass);
+    EXPECT_TRUE(
+        listed(filled(Rtcm3Writer(1041).bits(3, 6), 61)).starts_with("1041 NavIC ephemeris: satellite=3 week=0"));
+    EXPECT_TRUE(
+        listed(filled(Rtcm3Writer(1042).bits(3, 6), 64)).starts_with("1042 BeiDou ephemeris: satellite=3 week=0"));
+    EXPECT_NE(listed(filled(Rtcm3Writer(1045).bits(3, 6), 62)).find("e5a_invalid=0"), std::string::npos);
+    EXPECT_NE(listed(filled(Rtcm3Writer(1046).bits(3, 6), 63)).find("e1_invalid=0"), std::string::npos);
+    EXPECT_EQ(listed(filled(Rtcm3Writer(1019).bits(31, 6), 60)), "1019 GPS ephemeris: 60 bytes") << "cut";
     EXPECT_EQ(listed(Rtcm3Writer(1043).bits(9, 4).bytes()), "1043 : 2 bytes");
 }
 
