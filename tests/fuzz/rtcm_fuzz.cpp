@@ -8,6 +8,7 @@
 #include "receiver/protocol/rtcm3_descriptors.hpp"
 #include "receiver/protocol/rtcm3_ephemeris.hpp"
 #include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_ublox.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 #include "require.hpp"
@@ -35,6 +36,14 @@ void read(skyloop::ByteSpan frame) {
     if (const auto descriptors = decode_descriptors(*message)) {
         const Bytes once = encode(*descriptors);  // which cuts long texts
         require(encode(*decode_descriptors(*parse_rtcm3(once))) == once);
+    }
+    if (const auto station = decode_moving_station(*message)) {
+        const Bytes again = encode(*station);
+        require(decode_moving_station(*parse_rtcm3(again)) == station);
+    }
+    if (const auto biases = decode_station_biases(*message)) {
+        const Bytes again = encode(*biases);
+        require(decode_station_biases(*parse_rtcm3(again)) == biases);
     }
     const GpsTime near = gps_calendar_time(2025, 4, 11, 23, 14, 30);
     if (const auto record = decode_ephemeris(*message, near)) {

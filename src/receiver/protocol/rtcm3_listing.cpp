@@ -11,6 +11,7 @@
 #include "receiver/protocol/rtcm3_descriptors.hpp"
 #include "receiver/protocol/rtcm3_ephemeris.hpp"
 #include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_ublox.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
@@ -103,6 +104,47 @@ std::optional<std::vector<DecodedField>> listed_descriptors(const Rtcm3Message& 
     fields.push_back({"firmware", {told->firmware}});
     fields.push_back({"receiver_serial", {told->receiver_serial}});
     return fields;
+}
+
+std::vector<DecodedField> ublox_head_fields(const Rtcm3UbloxHead& head, std::uint64_t subtype) {
+    return {{"subtype", {subtype}},
+            {"station", {std::uint64_t(head.station)}},
+            {"kind", {std::uint64_t(head.kind)}},
+            {"tow_s", {head.epoch / 1e3}}};
+}
+
+// What is inside of 4072.0 real receivers have in another order, which nobody has published.
+std::optional<std::vector<DecodedField>> listed_ublox(const Rtcm3Message& message) {
+    if (const auto told = decode_moving_station(message)) {
+        auto fields = ublox_head_fields(told->head, 0);
+        constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+        for (std::size_t i = 0; i < 3; ++i)
+            fields.push_back({fmt::format("ecef_{}_m", axes[i]), {static_cast<double>(told->position[i]) / 1e4}});
+        for (std::size_t i = 0; i < 3; ++i)
+            fields.push_back({fmt::format("velocity_{}_mps", axes[i]), {told->velocity[i] / 1e3}});
+        fields.push_back({"position_acc_m", {told->position_deviation_mm / 1e3}});
+        fields.push_back({"velocity_acc_mps", {told->velocity_deviation / 1e3}});
+        return fields;
+    }
+    const auto told = decode_station_biases(message);
+    if (!told) return std::nullopt;
+    std::vector<DecodedValue> biases;
+    for (const Rtcm3StationBiases::Bias& bias : told->biases)
+        biases.push_back({std::vector<DecodedField>{{"gnss_id", {std::uint64_t{bias.system}}},
+                                                    {"band", {std::uint64_t{bias.band}}},
+                                                    {"offset", {std::int64_t{bias.offset}}},
+                                                    {"deviation", {std::uint64_t{bias.deviation}}}}});
+    auto fields = ublox_head_fields(told->head, 1);
+    fields.push_back({"biases", {std::move(biases)}});
+    return fields;
+}
+
+// Of a payload, whose frame is not at hand.
+Rtcm3Message message_of(int number, ByteSpan payload) {
+    BitReader bits(payload);
+    bits.skip(12);
+    Rtcm3Message message{number, {}, static_cast<int>(bits.get(12)), payload};
+    return message;
 }
 
 class RtcmLister {
@@ -272,6 +314,8 @@ void list_rtcm3(ByteSpan payload, DecodedMessage& message) {
     message.name = rtcm3_name(number);
     if (auto descriptors = listed_descriptors({number, {}, 0, payload})) {
         message.fields = std::move(*descriptors);
+    } else if (auto own = listed_ublox(message_of(number, payload))) {
+        message.fields = std::move(*own);
     } else if (auto ephemeris = listed_ephemeris(number, payload)) {
         message.fields = std::move(*ephemeris);
     } else if (list_known(number, lister)) {

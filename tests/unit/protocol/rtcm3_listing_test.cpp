@@ -7,6 +7,7 @@
 #include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_ublox.hpp"
 
 namespace skyloop {
 namespace {
@@ -196,6 +197,27 @@ TEST(Rtcm3Listing, EphemeridesTellTheirFieldsInTheirUnits) {
     EXPECT_NE(listed(filled(Rtcm3Writer(1046).bits(3, 6), 63)).find("e1_invalid=0"), std::string::npos);
     EXPECT_EQ(listed(filled(Rtcm3Writer(1019).bits(31, 6), 60)), "1019 GPS ephemeris: 60 bytes") << "cut";
     EXPECT_EQ(listed(Rtcm3Writer(1043).bits(9, 4).bytes()), "1043 : 2 bytes");
+}
+
+TEST(Rtcm3Listing, UbloxsOwnAreListedAsFarAsTheyAreKnown) {
+    const auto listed_frame = [](const Bytes& frame) {
+        const ByteSpan payload = parse_rtcm3(frame)->payload;
+        DecodedMessage message;
+        list_rtcm3(payload, message);
+        return text_line(message);
+    };
+    const std::string moving =
+        listed_frame(encode(Rtcm3MovingStation{{7, 1, 500}, {10'000, -1, 0}, {-1500, 0, 1}, 21, 30}));
+    EXPECT_NE(moving.find("subtype=0 station=7 kind=1 tow_s=0.5 ecef_x_m=1 ecef_y_m=-0.0001 ecef_z_m=0 "
+                          "velocity_x_mps=-1.5 velocity_y_mps=0 velocity_z_mps=0.001 position_acc_m=0.021 "
+                          "velocity_acc_mps=0.03"),
+              std::string::npos)
+        << moving;
+    const std::string biases = listed_frame(encode(Rtcm3StationBiases{{7, 2, 500}, {{6, 1, -20, 3}}}));
+    EXPECT_NE(biases.find("subtype=1 station=7 kind=2 tow_s=0.5 biases=[{gnss_id=6 band=1 offset=-20 deviation=3}]"),
+              std::string::npos)
+        << biases;
+    EXPECT_EQ(listed(Rtcm3Writer(4072).bits(2, 12).bytes()), "4072 u-blox reference station: subtype=2");
 }
 
 TEST(Rtcm3Listing, CutMessagesKeepTheirBytes) {
