@@ -88,20 +88,26 @@ struct ToldRange {
         return static_cast<double>(whole) * form.modulus_m() + static_cast<double>(steps) * range_step_m;
     }
 };
+// What the fields have room for.
+bool can_be_told(double range_m, const LegacyForm& form) {
+    return range_m >= 0 && range_m < std::exp2(form.whole_bits()) * form.modulus_m() - range_step_m;
+}
+
 ToldRange told_range(double range_m, const LegacyForm& form) {
-    const double most = std::exp2(form.whole_bits()) * form.modulus_m();
-    const double within = range_m >= 0 && range_m < most ? range_m : 0;
-    const double whole = std::floor(within / form.modulus_m());
-    ToldRange told{static_cast<std::int64_t>(whole), std::llround((within - whole * form.modulus_m()) / range_step_m)};
+    const double whole = std::floor(range_m / form.modulus_m());
+    ToldRange told{static_cast<std::int64_t>(whole), std::llround((range_m - whole * form.modulus_m()) / range_step_m)};
     // The modulus is no multiple of the step: what rounds beyond it is nearer to the next one's beginning.
     if (static_cast<double>(told.steps) * range_step_m >= form.modulus_m()) told = {told.whole + 1, 0};
     return told;
 }
 
 void put_second_carrier(BitWriter& bits, const Rtcm3LegacySatellite& from, double told_m, const LegacyForm& form) {
-    const Rtcm3LegacyCarrier l2 = from.l2.value_or(Rtcm3LegacyCarrier());
+    Rtcm3LegacyCarrier l2 = from.l2.value_or(Rtcm3LegacyCarrier());
+    constexpr double reach = 8191.5;
     std::optional<double> difference;
     if (l2.range_m) difference = (*l2.range_m - told_m) / range_step_m;
+    if (difference && std::abs(*difference) >= reach) difference.reset();
+    if (!difference && !l2.phase_range_m) l2 = {};  // then there is nothing to tell of it
     bits.put_signed(l2.code, 2);
     put_difference(bits, difference, difference_bits);
     put_phase(bits, l2, told_m);
@@ -174,8 +180,9 @@ Bytes encode(const Rtcm3LegacyObservables& observables) {
     const auto form = legacy_form(observables.number);
     std::vector<Rtcm3LegacySatellite> told;
     for (const Rtcm3LegacySatellite& satellite : observables.satellites)
-        if (satellite.l1.range_m && told.size() < most_legacy_satellites) told.push_back(satellite);
-    if (!form || told.empty()) return {};
+        if (form && satellite.l1.range_m && can_be_told(*satellite.l1.range_m, *form)) told.push_back(satellite);
+    if (told.empty()) return {};
+    told.resize(std::min(told.size(), most_legacy_satellites));
     BitWriter bits;
     bits.put_signed(observables.number, 12);
     bits.put_signed(observables.station, 12);

@@ -52,7 +52,8 @@ double legacy_range_modulus_m(int number);
 
 /// The frame. A range on L1 needs a phase beside it: without one its field serves L2 alone (DF012). Phases further from
 /// their range than the field reaches are told multiples of 1500 cycles nearer (DF012, DF018). Satellites without a
-/// range on L1 are left out, and those beyond the 31st. Empty for other numbers and for no satellites at all.
+/// range on L1, or one beyond 76.7e6 m, are left out, and those after the 31st; so are ranges on L2 that are further
+/// than 163.8 m from those on L1. Empty for other numbers and for no satellites at all.
 Bytes encode(const Rtcm3LegacyObservables& observables);
 /// Wavelengths are not transmitted. Lock times are the least that the indicators allow (table 3.4-2). Nothing for other
 /// numbers and cut messages.

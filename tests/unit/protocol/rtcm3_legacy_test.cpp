@@ -169,6 +169,16 @@ TEST(Rtcm3Legacy, RangesWithoutAPhaseServeL2Alone) {
     EXPECT_FALSE(s.l2->phase_range_m);
 }
 
+TEST(Rtcm3Legacy, WhatTheFieldsHaveNoRoomForIsLeftOut) {
+    Rtcm3LegacyObservables m{1012, 0, 0, false, {legacy_satellite(2.1e7), legacy_satellite(7.7e7)}, false, 0};
+    m.satellites[0].l2 = Rtcm3LegacyCarrier{3, 2.1e7 + 170, {}, l2_wavelength, 30, 40};
+    const Bytes frame = encode(m);
+    const Rtcm3LegacyObservables read = legacy_of(frame);
+    ASSERT_EQ(read.satellites.size(), 1u);
+    EXPECT_FALSE(read.satellites[0].l2);
+    EXPECT_EQ(encode(read), frame);
+}
+
 TEST(Rtcm3Legacy, RangesJustBelowAWholeMillisecondBeginTheNext) {
     const double range = 70 * speed_of_light * 1e-3 - 1e-3;
     const Rtcm3LegacyObservables m{1002, 0, 0, false, {legacy_satellite(range)}, false, 0};
