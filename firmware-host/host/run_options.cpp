@@ -228,8 +228,8 @@ void add_run_options(CLI::App& command, RunOptions& options) {
         .add_option(
             "--output", options.outputs,
             "Send the solution to other programs as well: gps-input:HOST:PORT hil-gps:HOST:PORT msp-tcp:[HOST:]PORT "
-            "msp-tcp-to:HOST:PORT json-udp:HOST:PORT json-tcp:[HOST:]PORT json-file:PATH, then ,KEY=VALUE; "
-            "repeatable")
+            "msp-tcp-to:HOST:PORT json-udp:HOST:PORT json-tcp:[HOST:]PORT json-file:PATH "
+            "rtcm-tcp:[HOST:]PORT rtcm-udp:HOST:PORT rtcm-file:PATH, then ,KEY=VALUE; repeatable")
         ->allow_extra_args(false);
     options.keys.add(command, "--power", "receiver.0.power");
     command.add_option("--state", options.state, key_help(scenario_key("receiver.0.state_file")));

@@ -251,6 +251,7 @@ Result<void> RunWatch::open_outputs(bool live) {
         OutputParts parts;
         parts.receivers = receiver_names(emulator);
         parts.due_ns = [&emulator](GpsTime time) { return emulator.pacer().due_at(time); };
+        parts.sources = {&emulator.simulation().navigation(), SKYLOOP_VERSION};
         parts.waits_for_readers = !live;
         auto output = RunOutput::open(settings, std::move(parts));
         if (!output) return fail(output.error());

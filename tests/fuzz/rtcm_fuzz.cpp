@@ -5,6 +5,10 @@
 
 #include "firmware/core/corrections.hpp"
 #include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_descriptors.hpp"
+#include "receiver/protocol/rtcm3_ephemeris.hpp"
+#include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_ublox.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 #include "require.hpp"
@@ -28,6 +32,28 @@ void read(skyloop::ByteSpan frame) {
     if (const auto header = decode_msm_header(*message)) {
         const Bytes again = encode(*header);
         require(decode_msm_header(*parse_rtcm3(again)) == header);
+    }
+    if (const auto descriptors = decode_descriptors(*message)) {
+        const Bytes once = encode(*descriptors);  // which cuts long texts
+        require(encode(*decode_descriptors(*parse_rtcm3(once))) == once);
+    }
+    if (const auto station = decode_moving_station(*message)) {
+        const Bytes again = encode(*station);
+        require(decode_moving_station(*parse_rtcm3(again)) == station);
+    }
+    if (const auto biases = decode_station_biases(*message)) {
+        const Bytes again = encode(*biases);
+        require(decode_station_biases(*parse_rtcm3(again)) == biases);
+    }
+    const GpsTime near = gps_calendar_time(2025, 4, 11, 23, 14, 30);
+    if (const auto record = decode_ephemeris(*message, near)) {
+        const Bytes once = encode_ephemeris(*record, near);
+        const auto again = decode_ephemeris(*parse_rtcm3(once), near);
+        require(again && encode_ephemeris(*again, near) == once);
+    }
+    if (const auto observables = decode_legacy(*message)) {
+        const Bytes once = encode(*observables);
+        if (!once.empty()) require(encode(*decode_legacy(*parse_rtcm3(once))) == once);
     }
 }
 

@@ -39,15 +39,9 @@ std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& conte
 }
 
 bool makes_nothing_of(UbxMessageId message) {
-    // RXM-SPARTN, RXM-RLM, RXM-IMES, TIM-TM2, TIM-VRFY, LOG-INFO, RTCM 4072.1 and 4072.0.
-    constexpr std::array<UbxMessageId, 8> nothing{{{0x02, 0x33},
-                                                   {0x02, 0x59},
-                                                   {0x02, 0x61},
-                                                   {0x0D, 0x03},
-                                                   {0x0D, 0x06},
-                                                   {0x21, 0x08},
-                                                   {0xF5, 0xFD},
-                                                   {0xF5, 0xFE}}};
+    // RXM-SPARTN, RXM-RLM, RXM-IMES, TIM-TM2, TIM-VRFY and LOG-INFO.
+    constexpr std::array<UbxMessageId, 6> nothing{
+        {{0x02, 0x33}, {0x02, 0x59}, {0x02, 0x61}, {0x0D, 0x03}, {0x0D, 0x06}, {0x21, 0x08}}};
     return std::find(nothing.begin(), nothing.end(), message) != nothing.end();
 }
 

@@ -59,8 +59,9 @@ std::vector<Bytes> make_satellite_message(UbxMessageId message, const ReportCont
 std::vector<Bytes> make_raw_message(UbxMessageId message, const ReportContext& context);
 /// Of the classes MON and SEC.
 std::vector<Bytes> make_monitor_message(UbxMessageId message, const ReportContext& context);
-/// Of the class F5: RTCM 1005 of a station in fixed mode, MSM4 and MSM7 of GPS, GLONASS, Galileo and BeiDou, and 1230.
-/// Nothing before time is known, for a system without observations and for 1006, 4072.0 and 4072.1.
+/// Of the class F5, whose ids are what RTCM's numbers have beyond 1000: 1005 of a station in fixed mode, MSM4 to MSM7
+/// of every system, 1001 to 1004, 1009 to 1012, and 1230. Nothing before time is known, for a system without
+/// observations and for others.
 std::vector<Bytes> make_rtcm_message(UbxMessageId message, const ReportContext& context);
 
 /// Levels of texts for people, as NMEA TXT numbers them; 3 are tests.

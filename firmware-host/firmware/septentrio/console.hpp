@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/core/bytes.hpp"
@@ -36,10 +37,11 @@ struct SeptentrioState {
     // Of the measurements and messages of the epochs so far.
     SbfMeasurementCounts counts{};
     std::optional<GpsTime> last_epoch{};
-    std::map<SatelliteId, RecordIssue> told_records{};  ///< since the streams were last changed
-    std::vector<Bytes> new_records{};                   ///< blocks of the last epoch
-    std::optional<Bytes> told_setup{};                  ///< since the streams were last changed
-    bool setup_changed = false;                         ///< at the last epoch
+    std::map<SatelliteId, RecordIssue> told_records{};                         ///< since the streams were last changed
+    std::map<std::pair<SatelliteId, NavigationMessage>, Ephemeris> records{};  ///< the last of each that was whole
+    std::vector<Bytes> new_records{};                                          ///< blocks of the last epoch
+    std::optional<Bytes> told_setup{};                                         ///< since the streams were last changed
+    bool setup_changed = false;                                                ///< at the last epoch
 };
 
 /// Takes an epoch in before its blocks are made; the same one again changes nothing.
@@ -48,7 +50,7 @@ void follow_epoch(SeptentrioState& receiver, const BoardProfile& board, const Na
 /// ReceiverSetup as the settings have it.
 SbfReceiverSetup sbf_receiver_setup(const SeptentrioSettings& settings, const BoardProfile& board);
 
-/// Whether a stream asks for what comes by navigation messages.
+/// Whether a stream, or a message for rovers, asks for what comes by navigation messages.
 bool wants_messages(const SeptentrioSettings& settings);
 
 /// Blocks, sentences and RTCM 3 that are due at an epoch on the port of `context`, in this order. Blocks that this

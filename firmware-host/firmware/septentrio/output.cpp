@@ -12,6 +12,7 @@
 #include "firmware/septentrio/console.hpp"
 #include "firmware/septentrio/rover_and_station.hpp"
 #include "firmware/septentrio/sbf_messages.hpp"
+#include "firmware/septentrio/station_output.hpp"
 #include "receiver/protocol/sbf_raw_blocks.hpp"
 
 namespace skyloop::firmware {
@@ -197,7 +198,7 @@ std::vector<Bytes> due_messages(const SeptentrioState& receiver, const ReportCon
     if (lets_through(receiver.settings, port, "NMEA"))
         for (const std::string& word : due_words(receiver, "NMEAOutput", context))
             if (const auto sentence = sentence_message(word)) append(make_message(*sentence, context));
-    append(station_output(receiver.settings, context));
+    append(station_output(receiver, context));
     return messages;
 }
 
@@ -211,6 +212,7 @@ void follow_epoch(SeptentrioState& receiver, const BoardProfile& board, const Na
     receiver.new_records.clear();
     for (const Subframe& message : state.epoch.subframes) {
         if (!message.record) continue;
+        receiver.records.insert_or_assign({message.satellite, message_of(*message.record)}, *message.record);
         const RecordIssue issue = issue_of(*message.record);
         const auto [known, is_first] = receiver.told_records.emplace(message.satellite, issue);
         if (!is_first && known->second == issue) continue;
@@ -235,7 +237,7 @@ bool wants_messages(const SeptentrioSettings& settings) {
         for (const std::string& word : words_of(stream))
             if (const MadeBlock* block = made_block(word); block != nullptr && block->pace == Pace::on_change)
                 return true;
-    return false;
+    return station_wants_records(settings);
 }
 
 std::optional<std::uint64_t> wanted_period_ms(const SeptentrioSettings& settings, std::uint64_t own) {

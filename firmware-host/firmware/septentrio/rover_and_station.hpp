@@ -1,8 +1,5 @@
 /// What a Septentrio receiver is told of its solution: modes, motion, signals (mosaic-X5 reference guide,
 /// firmware 4.14, chapter 3; PolaRx5TR reference guide, firmware 5.5, setPVTMode and setReceiverDynamics).
-///
-/// What a Septentrio receiver sends to others as their reference station: RTCM 3 (mosaic-X5 reference guide,
-/// firmware 4.14, setRTCMv3Output, setRTCMv3Interval, setRTCMv3Formatting).
 #pragma once
 
 #include <cstdint>
@@ -40,13 +37,6 @@ std::span<const NamedSignal> septentrio_signals();
 
 /// Whether a list of words by + has this one, or "all".
 bool lists(std::string_view words, std::string_view word);
-
-/// Messages that are due at an epoch on the port of `context`: 1005 and 1006 of a receiver that was told where it
-/// stands, MSM4, MSM7 and 1230. Others may be asked for and are left out.
-std::vector<Bytes> station_output(const SeptentrioSettings& settings, const ReportContext& context);
-
-/// The longest period, ms, at which each of them that a port sends finds its epochs; 0 when none is sent.
-std::uint64_t station_period_ms(const SeptentrioSettings& settings);
 
 /// Whether a port sends a protocol: "SBF", "NMEA", "RTCMv3".
 bool lets_through(const SeptentrioSettings& settings, std::string_view port, std::string_view protocol);

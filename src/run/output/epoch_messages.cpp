@@ -10,6 +10,7 @@
 #include "base/time/utc_time.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/output_only/other_protocols.hpp"
+#include "run/output/rtcm_writer.hpp"
 
 namespace skyloop::inline run {
 namespace {
@@ -276,7 +277,7 @@ private:
 
 }  // namespace
 
-EpochWriter make_epoch_writer(const OutputSettings& settings) {
+EpochWriter make_epoch_writer(const OutputSettings& settings, const WriterSources& sources) {
     switch (settings.format) {
         case OutputFormat::json:
             return json_job;
@@ -284,6 +285,8 @@ EpochWriter make_epoch_writer(const OutputSettings& settings) {
             return [id = settings.id](const EpochSeen& seen, const std::string&, std::uint64_t) {
                 return msp_job(seen, id);
             };
+        case OutputFormat::rtcm:
+            return make_rtcm_writer(settings, sources);
         default:
             break;
     }

@@ -16,6 +16,7 @@
 #include "receiver/protocol/mavlink_vehicle.hpp"
 #include "run/fault/run_observer.hpp"
 #include "run/output/output_settings.hpp"
+#include "world/gnss/ephemeris.hpp"
 
 namespace skyloop::inline run {
 
@@ -57,6 +58,12 @@ using EpochJob = std::function<std::vector<Bytes>()>;
 /// @param number of the receiver's epochs, from 0
 using EpochWriter = std::function<EpochJob(const EpochSeen& seen, const std::string& receiver, std::uint64_t number)>;
 
-EpochWriter make_epoch_writer(const OutputSettings& settings);
+/// What some formats tell beside the epoch.
+struct WriterSources {
+    const NavigationSource* broadcast = nullptr;  ///< records of satellites for RTCM; has to outlive the writer
+    std::string version;                          ///< of skyloop, as its RTCM names the receiver's firmware
+};
+
+EpochWriter make_epoch_writer(const OutputSettings& settings, const WriterSources& sources = {});
 
 }  // namespace skyloop::inline run

@@ -15,7 +15,8 @@ namespace skyloop::inline run {
 namespace {
 
 constexpr std::array<std::string_view, 4> way_names{"udp", "tcp", "tcp-to", "file"};
-constexpr std::array<std::string_view, 6> option_names{"receiver", "when", "system", "component", "id", "eph"};
+constexpr std::array<std::string_view, 10> option_names{"receiver", "when",    "system", "component", "id",
+                                                        "eph",      "station", "msm",    "every_s",   "ephemerides_s"};
 
 template <std::size_t count>
 std::optional<std::size_t> index_in(const std::array<std::string_view, count>& names, std::string_view name) {
@@ -26,7 +27,7 @@ std::optional<std::size_t> index_in(const std::array<std::string_view, count>& n
 
 std::string known_schemes() {
     return "gps-input:HOST:PORT hil-gps:HOST:PORT msp-tcp:[HOST:]PORT msp-tcp-to:HOST:PORT json-udp:HOST:PORT "
-           "json-tcp:[HOST:]PORT json-file:PATH";
+           "json-tcp:[HOST:]PORT json-file:PATH rtcm-tcp:[HOST:]PORT rtcm-udp:HOST:PORT rtcm-file:PATH";
 }
 
 /// @return the sentence of what is wrong; empty: nothing
@@ -41,12 +42,25 @@ std::string take_word(std::string_view key, std::string_view text, const std::ar
     return {};
 }
 
-std::string take_number(std::string_view key, std::string_view text, int least, std::uint8_t& value) {
-    const auto number = number_in<std::uint8_t>(text);
-    if (!number || *number < least)
-        return fmt::format("{} '{}': expected a whole number from {} to 255", key, text, least);
-    value = *number;
+struct WholeRange {
+    int least, most;
+};
+template <class Value>
+std::string take_number(std::string_view key, std::string_view text, const WholeRange& range, Value& value) {
+    const auto number = number_in<int>(text);
+    if (!number || *number < range.least || *number > range.most)
+        return fmt::format("{} '{}': expected a whole number from {} to {}", key, text, range.least, range.most);
+    value = static_cast<Value>(*number);
     return {};
+}
+
+std::string take_rtcm_option(std::string_view key, std::string_view value, OutputSettings& settings) {
+    if (key == "station") return take_number(key, value, {0, 4095}, settings.station);
+    if (key == "msm") return take_number(key, value, {4, 7}, settings.msm);
+    if (key == "every_s") return take_number(key, value, {1, 3600}, settings.every_s);
+    if (key == "ephemerides_s") return take_number(key, value, {0, 3600}, settings.ephemerides_s);
+    return fmt::format("option '{}' is unknown; expected one of {}{}", key, fmt::join(option_names, " "),
+                       did_you_mean(key, option_names));
 }
 
 std::string take_option(std::string_view key, std::string_view value, OutputSettings& settings) {
@@ -56,12 +70,11 @@ std::string take_option(std::string_view key, std::string_view value, OutputSett
         return value.empty() ? "receiver is empty; expected a name" : "";
     }
     if (key == "when") return take_word(key, value, output_moment_names, settings.when);
-    if (key == "system") return take_number(key, value, 1, settings.system);
-    if (key == "component") return take_number(key, value, 1, settings.component);
-    if (key == "id") return take_number(key, value, 0, settings.id);
+    if (key == "system") return take_number(key, value, {1, 255}, settings.system);
+    if (key == "component") return take_number(key, value, {1, 255}, settings.component);
+    if (key == "id") return take_number(key, value, {0, 255}, settings.id);
     if (key == "eph") return take_word(key, value, hil_gps_accuracy_names, settings.eph);
-    return fmt::format("option '{}' is unknown; expected one of {}{}", key, fmt::join(option_names, " "),
-                       did_you_mean(key, option_names));
+    return take_rtcm_option(key, value, settings);
 }
 
 std::string take_scheme(std::string_view scheme, OutputSettings& settings) {
@@ -105,6 +118,7 @@ std::vector<OutputFormat> formats_of(std::string_view key) {
     if (key == "system" || key == "component") return {OutputFormat::gps_input, OutputFormat::hil_gps};
     if (key == "id") return {OutputFormat::gps_input, OutputFormat::hil_gps, OutputFormat::msp};
     if (key == "eph") return {OutputFormat::hil_gps};
+    if (key == "station" || key == "msm" || key == "every_s" || key == "ephemerides_s") return {OutputFormat::rtcm};
     return {};
 }
 

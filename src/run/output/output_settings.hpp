@@ -22,8 +22,9 @@ enum class OutputFormat {
     hil_gps,    ///< MAVLink HIL_GPS, for PX4 on a simulator's link
     msp,        ///< MSP2_SENSOR_GPS, for iNav, Betaflight and ArduPilot
     json,       ///< a line of JSON: truth, report and satellites
+    rtcm,       ///< RTCM 3: what a base station with this receiver sends
 };
-inline constexpr std::array<std::string_view, 4> output_format_names{"gps-input", "hil-gps", "msp", "json"};
+inline constexpr std::array<std::string_view, 5> output_format_names{"gps-input", "hil-gps", "msp", "json", "rtcm"};
 
 enum class OutputWay { udp, tcp_server, tcp_client, file };
 
@@ -54,12 +55,16 @@ struct OutputSettings {
     std::uint8_t component = 220;  ///< of MAVLink, 1 … 255; 220: MAV_COMP_ID_GPS
     std::uint8_t id = 0;           ///< which receiver of the vehicle: gps_id, id, instance
     HilGpsAccuracy eph = HilGpsAccuracy::px4_cm;
+    std::uint16_t station = 0;         ///< of RTCM, 0 … 4095
+    std::uint8_t msm = 7;              ///< kind of the observations, 4 … 7
+    std::uint16_t every_s = 10;        ///< between places, antennas and receivers of RTCM; 1 … 3600
+    std::uint16_t ephemerides_s = 30;  ///< between the records of satellites, 0 … 3600; 0: none are sent
 };
 
 /// Reads FORMAT[-WAY]:TARGET[,KEY=VALUE]…: the formats as above; `udp:HOST:PORT`, `tcp:[HOST:]PORT` (a server),
 /// `tcp-to:HOST:PORT` (calls a server) or `file:PATH`, "-" for standard output. Without a way gps-input and hil-gps go
-/// by udp. Keys: receiver, when, system, component, id, eph, each once and where foreign_option() has
-/// nothing against it. Fails with `usage` and a sentence that quotes the text.
+/// by udp. Keys: receiver, when, system, component, id, eph, station, msm, every_s, ephemerides_s, each once and where
+/// foreign_option() has nothing against it. Fails with `usage` and a sentence that quotes the text.
 Result<OutputSettings> parse_output_uri(std::string_view text);
 
 /// What to say of an option that messages of this format have no place for; empty: they have one.

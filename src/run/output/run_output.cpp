@@ -58,7 +58,7 @@ public:
           parts_(std::move(parts)),
           told_(std::move(told)),
           numbers_(told_.size(), 0),
-          writer_(make_epoch_writer(settings)),
+          writer_(make_epoch_writer(settings, parts_.sources)),
           sink_(std::move(sink)),
           description_(fmt::format("{}: {}", output_format_names[static_cast<std::size_t>(settings.format)],
                                    sink_->description())) {

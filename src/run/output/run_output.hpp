@@ -10,6 +10,7 @@
 
 #include "base/core/result.hpp"
 #include "run/fault/run_observer.hpp"
+#include "run/output/epoch_messages.hpp"
 #include "run/output/output_settings.hpp"
 #include "wire/transport/message_sink.hpp"
 
@@ -23,6 +24,7 @@ struct OutputParts {
     std::function<std::optional<std::int64_t>(GpsTime)> due_ns{};
     /// Nothing comes late: the loop may wait for a reader rather than lose messages.
     bool waits_for_readers = false;
+    WriterSources sources{};
 };
 
 /// What became of an output's messages.

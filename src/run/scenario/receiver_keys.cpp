@@ -203,7 +203,8 @@ OutputSettings read_target(TableReader& table) {
     std::string uri;
     table.text("to", uri,
                {"gps-input:HOST:PORT, hil-gps:HOST:PORT, msp-tcp:[HOST:]PORT, msp-tcp-to:HOST:PORT, "
-                "json-udp:HOST:PORT, json-tcp:[HOST:]PORT, json-file:PATH",
+                "json-udp:HOST:PORT, json-tcp:[HOST:]PORT, json-file:PATH, rtcm-tcp:[HOST:]PORT, rtcm-udp:HOST:PORT, "
+                "rtcm-file:PATH",
                 "none"});
     if (table.recording() || !table.has("to")) return {};
     auto settings = parse_output_uri(uri);
@@ -218,9 +219,19 @@ void read_receiver_of(TableReader& table, const Scenario& scenario, OutputSettin
     if (!output.receiver.empty()) names_receiver(table, "receiver", output.receiver, receiver_names(scenario));
 }
 
+void read_rtcm_keys(TableReader& table, OutputSettings& output) {
+    constexpr NumberRange stations{0, 4095}, kinds{4, 7}, seconds{1, 3600}, seconds_or_none{0, 3600};
+    table.integer("station", output.station, stations, "RTCM: number of the base station");
+    table.integer("msm", output.msm, kinds, "RTCM: kind of the observations' messages, 7 is MSM7");
+    table.integer("every_s", output.every_s, seconds, "RTCM: between messages of the place, antenna and receiver");
+    table.integer("ephemerides_s", output.ephemerides_s, seconds_or_none,
+                  "RTCM: between the records of satellites; 0 sends none");
+}
+
 void refuse_foreign_keys(TableReader& table, const OutputSettings& output) {
     if (table.recording() || output.uri.empty()) return;
-    for (const std::string_view key : {"system", "component", "id", "eph"})
+    for (const std::string_view key :
+         {"system", "component", "id", "eph", "station", "msm", "every_s", "ephemerides_s"})
         if (const std::string foreign = foreign_option(output.format, key); table.has(key) && !foreign.empty())
             table.mistake(key, foreign);
 }
@@ -297,6 +308,7 @@ void read_outputs(TableReader& top, Scenario& scenario) {
                         {hil_gps_accuracy_names[1], HilGpsAccuracy::dop100}},
                        output.eph,
                        "what eph and epv of HIL_GPS hold: accuracies in centimetres for PX4, or DOP times 100");
+            read_rtcm_keys(table, output);
             refuse_foreign_keys(table, output);
             scenario.outputs.push_back(std::move(output));
         });

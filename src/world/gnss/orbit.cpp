@@ -248,4 +248,18 @@ const GlonassEphemeris& CarriedRecords::at(const GlonassEphemeris& record, GpsTi
     return kept.record;
 }
 
+KeplerEphemeris ephemeris_of_almanac(const KeplerEphemeris& almanac, GpsTime time) {
+    const std::int64_t number = (time.time_since_epoch() + ephemeris_spacing / 2) / ephemeris_spacing;
+    KeplerEphemeris record = carried_almanac(almanac, GpsTime(number * ephemeris_spacing));
+    constexpr std::int64_t issues = 256;
+    constexpr double usual_accuracy_m = 2.4, usual_fit_h = 4;
+    record.message = NavigationMessage::lnav;
+    record.iode = record.iodc = static_cast<int>(number % issues);
+    // In the run the almanac is the truth.
+    record.accuracy_m = usual_accuracy_m;
+    // Of QZSS a flag, whose 0 is its usual two hours.
+    record.fit_interval_h = record.satellite.constellation == Constellation::qzss ? 0 : usual_fit_h;
+    return record;
+}
+
 }  // namespace skyloop::inline world

@@ -55,6 +55,12 @@ Ephemeris carried_to(const Ephemeris& ephemeris, GpsTime time);
 /// with them is carried along (IS-GPS-200, 20.3.3.4.3.1). Of GPS and QZSS, without harmonic and quadratic terms.
 KeplerEphemeris carried_almanac(const KeplerEphemeris& record, GpsTime time);
 
+/// How far apart the reference times of ephemeris_of_almanac() are.
+inline constexpr std::chrono::hours ephemeris_spacing{2};
+/// An almanac of GPS or QZSS as the ephemeris that the satellite would send at that time: the reference time is the
+/// nearest whole multiple of ephemeris_spacing, each with an issue of its own, and the accuracy a usual one.
+KeplerEphemeris ephemeris_of_almanac(const KeplerEphemeris& almanac, GpsTime time);
+
 /// Gives for each GLONASS record the same orbit at the last whole minute from its toe towards an instant. Whole minutes
 /// are the steps of the integration itself, so that carrying changes no bit of it.
 ///

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/core/receiver.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/stream_splitter.hpp"

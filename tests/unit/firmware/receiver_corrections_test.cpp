@@ -4,6 +4,7 @@
 #include "base/geo/geodetic.hpp"
 #include "firmware/core/receiver.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_frame.hpp"

@@ -5,7 +5,10 @@
 
 #include "base/geo/geodetic.hpp"
 #include "firmware/core/receiver.hpp"
+#include "firmware/messages/rtcm_observations.hpp"
 #include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_ublox.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "ubx_reports.hpp"
 #include "world/gnss/constants.hpp"
@@ -138,6 +141,113 @@ TEST(RtcmMessages, NothingIsTrueBeforeTimeIsKnown) {
     f9.state.time = {};
     for (const UbxMessageId id : {rtcm_1005, rtcm_1077, rtcm_1230})
         EXPECT_TRUE(make_rtcm_message(id, f9.context()).empty());
+}
+
+// DF394 and DF395 of each system (RTCM 10403.3, tables 3.5-91 to 3.5-108).
+TEST(RtcmMessages, EverySystemHasItsSatellitesAndSignals) {
+    struct Case {
+        int number;
+        SatelliteId satellite;
+        Signal signal;
+        int told_satellite, told_signal;
+    };
+    const Case cases[] = {{1075, {Constellation::gps, 32}, Signal::l5, 32, 23},
+                          {1085, {Constellation::glonass, 24}, Signal::g2, 24, 8},
+                          {1095, {Constellation::galileo, 36}, Signal::e5b, 36, 15},
+                          {1105, {Constellation::sbas, 36}, Signal::l1, 17, 2},  // PRN 136
+                          {1115, {Constellation::qzss, 3}, Signal::l2, 3, 16},
+                          {1125, {Constellation::beidou, 63}, Signal::l5, 63, 23},
+                          {1135, {Constellation::navic, 9}, Signal::l5, 9, 22}};
+    UbxReport report = reference();
+    Observations& observations = report.state.epoch.observations;
+    const RtcmEpoch epoch{observations, 18, MetresPerSecond(0), 7};
+    for (const Case& one : cases) {
+        observations.signals = {rtcm_signal(one.satellite, one.signal)};
+        EXPECT_EQ(msm_constellation(one.number), one.satellite.constellation);
+        EXPECT_EQ(msm_number(one.satellite.constellation, 5), one.number);
+        const auto frames = msm_frames(epoch, one.number, false);
+        ASSERT_EQ(frames.size(), 1U) << one.number;
+        const auto told = decode_msm(*parse_rtcm3(frames.front()));
+        ASSERT_TRUE(told && told->cells.size() == 1) << one.number;
+        EXPECT_EQ(told->station, 7);
+        EXPECT_EQ(told->cells[0].satellite, one.told_satellite) << one.number;
+        EXPECT_EQ(told->cells[0].signal, one.told_signal) << one.number;
+        EXPECT_TRUE(told->cells[0].phase_range_rate) << "MSM5 has rates";
+    }
+    EXPECT_TRUE(msm_frames(epoch, 1077, false).empty());
+    EXPECT_TRUE(msm_frames(epoch, 1078, false).empty());
+}
+
+TEST(RtcmMessages, MoreThan64CellsAreToldInTwoMessages) {
+    UbxReport report = reference();
+    Observations& observations = report.state.epoch.observations;
+    observations.signals.clear();
+    for (int number = 1; number <= 25; ++number)
+        for (const Signal signal : {Signal::l1, Signal::l2, Signal::l5})
+            observations.signals.push_back(rtcm_signal({Constellation::gps, number}, signal));
+    const auto frames = msm_frames({observations, 18, MetresPerSecond(0), 0}, 1077, false);
+    ASSERT_EQ(frames.size(), 2U);
+    const auto first = decode_msm(*parse_rtcm3(frames[0])), second = decode_msm(*parse_rtcm3(frames[1]));
+    EXPECT_TRUE(first->more);
+    EXPECT_FALSE(second->more);
+    EXPECT_EQ(first->cells.size(), 63U);
+    EXPECT_EQ(second->cells.size(), 12U);
+    EXPECT_EQ(second->cells.front().satellite, 22);
+}
+
+TEST(RtcmMessages, ObservationsAreToldAsBeforeToo) {
+    UbxReport f9 = reference();
+    const auto told = [&](std::uint8_t id) {
+        const auto frames = make_rtcm_message({0xF5, id}, f9.context());
+        return frames.empty() ? Rtcm3LegacyObservables() : *decode_legacy(*parse_rtcm3(frames.front()));
+    };
+    const Rtcm3LegacyObservables gps = told(4), glonass = told(12);
+    EXPECT_EQ(gps.number, 1004);
+    EXPECT_EQ(gps.epoch, head_of(f9, rtcm_1077).epoch);
+    ASSERT_EQ(gps.satellites.size(), 1U);
+    EXPECT_NEAR(*gps.satellites[0].l1.range_m, 2.2e7 - 200e-6 * speed_of_light, 0.011);
+    EXPECT_TRUE(gps.satellites[0].l2);
+    EXPECT_EQ(gps.satellites[0].l1.cno_dbhz, 41);
+    EXPECT_EQ(gps.satellites[0].l1.lock_s, 5);
+    EXPECT_EQ(glonass.number, 1012);
+    EXPECT_EQ(glonass.epoch, head_of(f9, rtcm_1087).epoch & 0x7FF'FFFF);
+    ASSERT_EQ(glonass.satellites.size(), 1U);
+    EXPECT_FALSE(glonass.satellites[0].l2);
+    EXPECT_EQ(glonass.satellites[0].frequency_channel, 0);
+}
+
+TEST(RtcmMessages, AMovingBaseTellsItsPlaceAndVelocity) {
+    UbxReport f9 = reference();
+    f9.config.set(in_ram, 0x30090001, 12);
+    const auto frames = make_rtcm_message({0xF5, 0xFE}, f9.context());
+    ASSERT_EQ(frames.size(), 1U);
+    const auto message = parse_rtcm3(frames.front());
+    EXPECT_EQ(message->number, 4072);
+    EXPECT_EQ(message->subtype, 0);
+    EXPECT_EQ(message->station, 12);
+    const auto told = decode_moving_station(*message);
+    ASSERT_TRUE(told);
+    EXPECT_EQ(told->head.epoch, head_of(f9, rtcm_1077).epoch);
+    const Fix& fix = f9.state.epoch.fix;
+    const Eigen::Vector3d place = to_ecef(fix.position).vector();
+    double speed = 0;
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(static_cast<double>(told->position[static_cast<std::size_t>(i)]) * 1e-4, place[i], 1e-4);
+        speed = std::hypot(speed, told->velocity[static_cast<std::size_t>(i)] * 1e-3);
+    }
+    EXPECT_NEAR(speed, std::hypot(fix.velocity.north, fix.velocity.east, fix.velocity.down), 2e-3);
+    EXPECT_EQ(told->velocity_deviation, 250U);
+    f9.lose_fix();
+    EXPECT_TRUE(make_rtcm_message({0xF5, 0xFE}, f9.context()).empty());
+}
+
+TEST(RtcmMessages, TheBandsOfABaseHaveNoBiases) {
+    const UbxReport f9 = reference();
+    const auto told = decode_station_biases(*parse_rtcm3(make_rtcm_message({0xF5, 0xFD}, f9.context()).at(0)));
+    ASSERT_TRUE(told);
+    EXPECT_EQ(told->head.epoch, head_of(f9, rtcm_1077).epoch);
+    const std::vector<Rtcm3StationBiases::Bias> bands{{0, 0, 0, 0}, {0, 1, 0, 0}, {3, 0, 0, 0}, {6, 0, 0, 0}};
+    EXPECT_EQ(told->biases, bands);
 }
 
 // A ZED-F9P's 1230, as its users print it.

@@ -14,6 +14,7 @@
 #include "receiver/protocol/sbf_blocks.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "sample_epochs.hpp"
+#include "septentrio_receiver.hpp"
 #include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
@@ -23,17 +24,6 @@ using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-BoardProfile septentrio_board() {
-    BoardProfile board = sample_board(NmeaVersion::v4_0, {Constellation::gps, Constellation::galileo});
-    board.maker = MakerKind::sbf;
-    board.sentences.clear();
-    board.baud = 115200;
-    board.default_rate_hz = 5;
-    board.max_rate_hz = 50;
-    board.ports = {PortId::uart1, PortId::usb};
-    return board;
-}
 
 class Console : public testing::Test {
 protected:
@@ -398,43 +388,6 @@ std::vector<int> blocks_in(const std::vector<StreamPiece>& pieces) {
     return numbers;
 }
 
-class SeptentrioReceiver : public testing::Test {
-protected:
-    SeptentrioReceiver() {
-        fix_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500);
-        add_satellites(fix_, Constellation::gps, 1, 12);
-        receiver_.start(fix_.time);
-    }
-    // What has left after that long, an epoch each period of the receiver.
-    std::vector<StreamPiece> wait(Nanoseconds length) {
-        StreamProtocols protocols;
-        protocols.sbf = true;
-        StreamSplitter splitter(protocols);
-        std::vector<StreamPiece> pieces;
-        for (const GpsTime end = now_ + length; now_ < end;) {
-            now_ += 1ms;
-            for (const Receiver::Sent& sent : receiver_.output(now_))
-                for (StreamPiece& piece : splitter.feed(sent.bytes))
-                    pieces.push_back(std::move(piece));
-            if (now_.time_since_epoch() % receiver_.settings().navigation_period != 0ns) continue;
-            fix_.time = now_;
-            Epoch epoch{fix_};
-            epoch.observations = observations_;
-            if (!observations_.signals.empty()) epoch.observations.receive_time = now_;
-            receiver_.on_epoch(epoch);
-        }
-        for (StreamPiece& piece : splitter.finish())
-            pieces.push_back(std::move(piece));
-        return pieces;
-    }
-    void say(const std::string& line) { receiver_.input(PortId::uart1, to_bytes(line + "\n"), now_); }
-
-    Receiver receiver_{septentrio_board(), ReceiverOptions{}};
-    Fix fix_;
-    Observations observations_;
-    GpsTime now_ = sample_fix("2024-03-05T12:00:00Z", 47, 8, 500).time;
-};
-
 TEST_F(SeptentrioReceiver, SendsFromTheFactoryOnWhatItsBoardNames) {
     BoardProfile board = septentrio_board();
     board.sbf_blocks = {"PVTGeodetic",     "PosCovGeodetic", "VelCovGeodetic", "DOP",           "AttEuler",
@@ -513,54 +466,6 @@ TEST_F(SeptentrioReceiver, SendsSentencesToo) {
     wait(100ms);
     for (const StreamPiece& piece : wait(2s))
         EXPECT_NE(piece.kind, StreamKind::nmea);
-}
-
-std::vector<int> corrections_in(const std::vector<StreamPiece>& pieces) {
-    std::vector<int> numbers;
-    for (const StreamPiece& piece : pieces)
-        if (piece.kind == StreamKind::rtcm3) numbers.push_back(parse_rtcm3(piece.bytes)->number);
-    return numbers;
-}
-
-TEST_F(SeptentrioReceiver, IsAReferenceStationAtThePlaceThatItWasTold) {
-    Observation signal;
-    signal.satellite = {Constellation::gps, 1};
-    signal.signal = Signal::l1;
-    signal.carrier = carrier_frequency(Signal::l1);
-    signal.cn0 = DbHz(41);
-    signal.pseudorange = Metres(2.2e7);
-    observations_.signals = {signal};
-    say("sso,Stream1,COM1,PVTGeodetic,sec1");
-    say("sdio,COM1,auto,SBF");
-    say("sr3f,123");
-    say("sr3i,MSM4,0.5");
-    wait(1s);
-    EXPECT_THAT(corrections_in(wait(2s)), ElementsAre()) << "it is not let out";
-    say("sdio,COM1,,+RTCMv3");
-    wait(1s);
-    EXPECT_THAT(corrections_in(wait(1s)), ElementsAre(1074, 1230, 1074)) << "it moves";
-    say("sao,Main,0,0,1.5");
-    say("sspg,Geodetic1,47.5,8.25,400");
-    say("spm,Static,,Geodetic1");
-    wait(1s);
-    const std::vector<StreamPiece> pieces = wait(1s);
-    EXPECT_THAT(corrections_in(pieces), ElementsAre(1006, 1074, 1230, 1074));
-    for (const StreamPiece& piece : pieces) {
-        if (piece.kind == StreamKind::sbf) {
-            const auto pvt = decode_sbf<SbfPvtGeodetic>(parse_sbf(piece.bytes)->body);
-            EXPECT_EQ(pvt->mode, 3) << "fixed location";
-            EXPECT_EQ(pvt->error, 0);
-            EXPECT_NEAR(pvt->latitude, Angle::degrees(47.5).rad(), 1e-10);
-            EXPECT_EQ(pvt->vel_north, 0);
-        } else if (piece.kind != StreamKind::rtcm3) {
-            continue;
-        } else if (const auto station = decode_station(*parse_rtcm3(piece.bytes))) {
-            EXPECT_EQ(station->station, 123);
-            EXPECT_EQ(station->antenna_height, 15000);
-            EXPECT_EQ(station->position[0],
-                      std::llround(to_ecef(Geodetic::degrees(47.5, 8.25, 400)).vector().x() * 1e4));
-        }
-    }
 }
 
 TEST_F(SeptentrioReceiver, AnswersAtItsNewSpeedAndOnePieceAtATime) {

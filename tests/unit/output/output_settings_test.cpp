@@ -57,6 +57,12 @@ TEST(OutputSettings, OptionsFollowBehindCommas) {
     EXPECT_EQ(all.component, 1);
     EXPECT_EQ(all.id, 7);
     EXPECT_EQ(all.eph, HilGpsAccuracy::dop100);
+    const OutputSettings rtcm = settings_of("rtcm-tcp:2101,station=4095,msm=4,every_s=1,ephemerides_s=0");
+    EXPECT_EQ(rtcm.format, OutputFormat::rtcm);
+    EXPECT_EQ(rtcm.station, 4095);
+    EXPECT_EQ(rtcm.msm, 4);
+    EXPECT_EQ(rtcm.every_s, 1);
+    EXPECT_EQ(rtcm.ephemerides_s, 0);
     // A comma may be of a file's name.
     const OutputSettings file = settings_of("json-file:runs/a,b=c,when=report");
     EXPECT_EQ(file.path, "runs/a,b=c");
@@ -76,6 +82,12 @@ TEST(OutputSettings, WhatIsNoOutputIsRefusedWithItsReason) {
     EXPECT_THAT(refusal_of_output("json-file:"), HasSubstr("the path is missing"));
     EXPECT_THAT(refusal_of_output("gps-input:h:1,sytem=3"), HasSubstr("did you mean 'system'?"));
     EXPECT_THAT(refusal_of_output("gps-input:h:1,system=0"), HasSubstr("system '0': expected a whole number from 1"));
+    EXPECT_THAT(refusal_of_output("rtcm:h:1"), HasSubstr("'rtcm' is no output"));
+    EXPECT_THAT(refusal_of_output("rtcm-tcp:1,msm=3"), HasSubstr("msm '3': expected a whole number from 4 to 7"));
+    EXPECT_THAT(refusal_of_output("rtcm-tcp:1,station=4096"), HasSubstr("expected a whole number from 0 to 4095"));
+    EXPECT_THAT(refusal_of_output("rtcm-tcp:1,every_s=0"), HasSubstr("expected a whole number from 1 to 3600"));
+    EXPECT_THAT(refusal_of_output("rtcm-tcp:1,ephemerides_s=3601"), HasSubstr("from 0 to 3600"));
+    EXPECT_THAT(refusal_of_output("json-tcp:1,station=1"), HasSubstr("'station' is an option of rtcm; json does not"));
     EXPECT_THAT(refusal_of_output("gps-input:h:1,id=256"), HasSubstr("id '256'"));
     EXPECT_THAT(refusal_of_output("gps-input:h:1,id=1.5"), HasSubstr("id '1.5'"));
     EXPECT_THAT(refusal_of_output("gps-input:h:1,id="), HasSubstr("id ''"));
