@@ -4,6 +4,8 @@
 #include <array>
 
 #include "receiver/protocol/rtcm3.hpp"
+#include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_ublox.hpp"
 #include "receiver/protocol/ubx_raw.hpp"
 
 namespace skyloop::firmware {
@@ -57,9 +59,10 @@ CorrectionAnswer answer_of(const Rtcm3Message& message, Use use, bool known = tr
     return {encode_frame(rtcm_report(message, use)), encode_frame(correction_report(message, use, known))};
 }
 
-Position<Ecef> place_of(const Rtcm3Station& station) {
+// @param told ECEF, 0.1 mm
+Position<Ecef> place_of(const std::array<std::int64_t, 3>& told) {
     constexpr double metres = 1e-4;
-    const auto at = [&](std::size_t axis) { return metres * static_cast<double>(station.position[axis]); };
+    const auto at = [&](std::size_t axis) { return metres * static_cast<double>(told[axis]); };
     return {at(0), at(1), at(2)};
 }
 
@@ -80,21 +83,27 @@ CorrectionAnswer CorrectionInput::take(ByteSpan frame, GpsTime now, int leap_sec
     const auto position = decode_station(*message);
     const bool observations = is_observation(message->number);
     const bool biases = decode_glonass_biases(*message).has_value();
-    if (!position && !observations && !biases) {
+    const auto moving = decode_moving_station(*message);
+    if (!position && !observations && !biases && !moving) {
         const bool known = is_description(message->number);
         return answer_of(*message, known ? Use::used : Use::not_used, known);
     }
     if (!message->station || !follow(*message->station, now)) return answer_of(*message, Use::not_used);
     Station& s = *station_;
     if (biases) s.data.take_glonass_biases();
+    if (moving) {
+        s.position = place_of(moving->position);
+        s.data.take_moving(*s.position);
+    }
     if (position) {
-        s.data.take_position(*position);
-        s.position = place_of(*position);
+        s.position = place_of(position->position);
+        s.data.take_position(*s.position);
     }
     if (observations) {
         if (s.heard && difference(now, *s.heard) > ability_.fixed_held) s.complete_since.reset();
         s.heard = now;
-        if (const auto decoded = decode_msm(*message)) s.data.take_observations(*decoded, now, leap_seconds);
+        if (const auto msm = decode_msm(*message)) s.data.take_observations(*msm, now, leap_seconds);
+        if (const auto old = decode_legacy(*message)) s.data.take_observations(*old, now, leap_seconds);
     }
     if (s.position && s.heard && !s.complete_since) s.complete_since = now;
     return answer_of(*message, Use::used);

@@ -14,6 +14,7 @@
 #include "firmware/messages/rtcm_observations.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_signals.hpp"
 #include "receiver/protocol/rtcm3_ublox.hpp"
 
 namespace skyloop::firmware {

@@ -9,6 +9,7 @@
 #include "firmware/messages/field_values.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_signals.hpp"
 #include "world/gnss/constants.hpp"
 
 namespace skyloop::firmware {
@@ -16,9 +17,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// By the tens of their numbers from 1070 on.
-constexpr std::array msm_order{Constellation::gps,  Constellation::glonass, Constellation::galileo, Constellation::sbas,
-                               Constellation::qzss, Constellation::beidou,  Constellation::navic};
 constexpr std::size_t most_cells = 64;
 constexpr int most_msm_satellites = 64;
 
@@ -39,9 +37,6 @@ std::uint32_t msm_epoch(Constellation constellation, const RtcmEpoch& epoch) {
     const std::uint32_t moscow = moscow_ms(epoch);
     return moscow / day_ms << 27 | moscow % day_ms;
 }
-
-// DF394: of SBAS PRN 120 is the first (table 3.5-101), S20 of RINEX.
-int msm_satellite(SatelliteId id) { return id.constellation == Constellation::sbas ? id.number - 19 : id.number; }
 
 // What the receiver's clock is past a whole millisecond, and how fast that grows.
 struct PastMillisecond {
@@ -113,36 +108,6 @@ std::optional<Rtcm3LegacyCarrier> legacy_carrier(const Observation& o, const Pas
 }
 
 }  // namespace
-
-std::optional<Constellation> msm_constellation(int number) {
-    if (!msm_kind(number)) return std::nullopt;
-    return msm_order[static_cast<std::size_t>((number - 1070) / 10)];
-}
-
-int msm_number(Constellation constellation, int kind) {
-    return 1070 + 10 * static_cast<int>(std::ranges::find(msm_order, constellation) - msm_order.begin()) + kind;
-}
-
-int msm_signal(Constellation constellation, Signal signal) {
-    switch (signal) {
-        case Signal::l1:
-        case Signal::g1:
-        case Signal::b1i:
-            return constellation == Constellation::beidou && signal == Signal::l1 ? 0 : 2;  // 1C 1C 2I
-        case Signal::l2:
-            return 16;  // 2L
-        case Signal::g2:
-        case Signal::b3i:
-            return 8;  // 2C 6I
-        case Signal::e5b:
-            return constellation == Constellation::beidou ? 14 : 15;  // 7I 7Q
-        case Signal::l5:
-            // 5Q 5P; of SBAS 5I, of NavIC 5A
-            return constellation == Constellation::sbas || constellation == Constellation::navic ? 22 : 23;
-        default:
-            return 0;
-    }
-}
 
 bool has_msm_signals(const RtcmEpoch& epoch, Constellation constellation) {
     return std::ranges::any_of(epoch.observations.signals,

@@ -18,15 +18,6 @@ struct RtcmEpoch {
     int station = 0;                 ///< DF003
 };
 
-/// The system of a multiple signal message; nothing for other numbers.
-std::optional<Constellation> msm_constellation(int number);
-/// The number of the message of kind 4 … 7 of a system: 1077 of GPS.
-int msm_number(Constellation constellation, int kind);
-
-/// DF395: the code that is tracked (RTCM 10403.3, tables 3.5-91, 3.5-96, 3.5-99, 3.5-102, 3.5-105 and 3.5-108, of NavIC
-/// as amended); 0 for none.
-int msm_signal(Constellation constellation, Signal signal);
-
 /// Whether there is anything to tell of a system: a signal with a range.
 bool has_msm_signals(const RtcmEpoch& epoch, Constellation constellation);
 /// The observations of a system, in as many messages as it takes where 64 cells do not hold them; all but the last say

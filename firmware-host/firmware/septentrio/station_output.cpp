@@ -22,6 +22,7 @@
 #include "receiver/protocol/rtcm3_descriptors.hpp"
 #include "receiver/protocol/rtcm3_ephemeris.hpp"
 #include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_signals.hpp"
 
 namespace skyloop::firmware {
 namespace {

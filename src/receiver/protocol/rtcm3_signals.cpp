@@ -1,5 +1,6 @@
 #include "receiver/protocol/rtcm3_signals.hpp"
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -7,6 +8,11 @@
 
 namespace skyloop::inline receiver {
 namespace {
+
+// By the tens of their numbers from 1070 on.
+constexpr std::array msm_order{Constellation::gps,  Constellation::glonass, Constellation::galileo, Constellation::sbas,
+                               Constellation::qzss, Constellation::beidou,  Constellation::navic};
+constexpr int sbas_offset = 19;
 
 struct MsmBand {
     int first, last;
@@ -40,10 +46,41 @@ std::span<const MsmBand> bands_of(Constellation constellation) {
 }  // namespace
 
 std::optional<Constellation> msm_constellation(int number) {
-    using enum Constellation;
-    constexpr std::array systems{gps, glonass, galileo, sbas, qzss, beidou, navic};
     if (!msm_kind(number)) return std::nullopt;
-    return systems[static_cast<std::size_t>((number - 1070) / 10)];
+    return msm_order[static_cast<std::size_t>((number - 1070) / 10)];
+}
+
+int msm_number(Constellation constellation, int kind) {
+    return 1070 + 10 * static_cast<int>(std::ranges::find(msm_order, constellation) - msm_order.begin()) + kind;
+}
+
+int msm_satellite(SatelliteId satellite) {
+    return satellite.constellation == Constellation::sbas ? satellite.number - sbas_offset : satellite.number;
+}
+
+SatelliteId satellite_of_msm(Constellation constellation, int number) {
+    return {constellation, constellation == Constellation::sbas ? number + sbas_offset : number};
+}
+
+int msm_signal(Constellation constellation, Signal signal) {
+    switch (signal) {
+        case Signal::l1:
+        case Signal::g1:
+        case Signal::b1i:
+            return constellation == Constellation::beidou && signal == Signal::l1 ? 0 : 2;  // 1C 1C 2I
+        case Signal::l2:
+            return 16;  // 2L
+        case Signal::g2:
+        case Signal::b3i:
+            return 8;  // 2C 6I
+        case Signal::e5b:
+            return constellation == Constellation::beidou ? 14 : 15;  // 7I 7Q
+        case Signal::l5:
+            // 5Q 5P; of SBAS 5I, of NavIC 5A
+            return constellation == Constellation::sbas || constellation == Constellation::navic ? 22 : 23;
+        default:
+            return 0;
+    }
 }
 
 std::optional<Signal> msm_carrier(Constellation constellation, int number) {

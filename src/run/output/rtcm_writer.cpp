@@ -15,6 +15,7 @@
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/rtcm3_descriptors.hpp"
 #include "receiver/protocol/rtcm3_ephemeris.hpp"
+#include "receiver/protocol/rtcm3_signals.hpp"
 #include "world/gnss/orbit.hpp"
 
 namespace skyloop::inline run {
@@ -79,9 +80,8 @@ public:
         for (const Constellation system : msm_systems_in_order)
             if (firmware::has_msm_signals(epoch, system)) systems.push_back(system);
         for (const Constellation system : systems)
-            std::ranges::move(
-                firmware::msm_frames(epoch, firmware::msm_number(system, settings_.msm), system != systems.back()),
-                std::back_inserter(frames));
+            std::ranges::move(firmware::msm_frames(epoch, msm_number(system, settings_.msm), system != systems.back()),
+                              std::back_inserter(frames));
         for (const Ephemeris& ephemeris : record.ephemerides)
             if (Bytes frame = encode_ephemeris(ephemeris, record.now); !frame.empty()) frames.push_back(frame);
         return frames;
