@@ -8,6 +8,7 @@
 #include "firmware/messages/rtcm_observations.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/rtcm3_legacy.hpp"
+#include "receiver/protocol/rtcm3_signals.hpp"
 #include "receiver/protocol/rtcm3_ublox.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "ubx_reports.hpp"
