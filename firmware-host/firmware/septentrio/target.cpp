@@ -86,6 +86,8 @@ void SeptentrioConsole::apply(SeptentrioTarget& to) const {
     to.config.elevation_mask = elevation;
     to.config.settings.elevation_mask = as_at_start ? start_.config.settings.elevation_mask : elevation;
     to.config.settings.subframes = wants_messages(settings);
+    const std::string& oldest = settings.values("DiffCorrUsage")[1];  // MaxAge
+    if (const auto seconds = number_in<double>(oldest)) to.config.corrections.timeout = Seconds(*seconds);
     for (const PortId port : board_.ports)
         to.config.ports[static_cast<std::size_t>(port)].in.rtcm3 = lets_in(port, "RTCMv3");
     apply_systems(to);
