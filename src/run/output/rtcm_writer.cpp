@@ -119,6 +119,7 @@ private:
         Rtcm3GlonassBiases biases;
         biases.station = settings_.station;
         biases.aligned = true;
+        biases.bias[0] = biases.bias[2] = 0;  // of L1 C/A and L2 C/A, the signals that are observed
         frames.push_back(encode(biases));
     }
 

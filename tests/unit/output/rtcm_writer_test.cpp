@@ -110,6 +110,10 @@ TEST(RtcmWriter, TheStationStandsWhereTheAntennaTrulyIs) {
             << "not where the fix is, 2 m off";
     EXPECT_EQ(*decode_descriptors(*parse_rtcm3(frames[2])),
               (Rtcm3Descriptors{1033, 77, "ADVNULLANTENNA", 0, "", "SKYLOOP", "1.2", ""}));
+    const auto biases = decode_glonass_biases(*parse_rtcm3(frames[3]));
+    EXPECT_TRUE(biases->aligned);
+    EXPECT_EQ(biases->bias[0], 0);
+    EXPECT_EQ(biases->bias[2], 0);
     const auto first = decode_msm(*parse_rtcm3(frames[4])), last = decode_msm(*parse_rtcm3(frames[6]));
     EXPECT_EQ(first->cells.size(), 3U);
     EXPECT_EQ(first->station, 77);
