@@ -65,9 +65,10 @@ private:
     [[nodiscard]] GroupEquations equations(const Group& group, bool phase, Seconds passed) const;
     void use_codes(const Group& group, Seconds passed);
     bool use_phases(Group group, GpsTime time);
+    void follow_misfits(Seconds passed);
     [[nodiscard]] std::vector<AmbiguityPair> pairs(double most_variance, Seconds tracked) const;
     [[nodiscard]] double variance_of_best(double share) const;
-    std::optional<FixedOffset> fix(const std::vector<AmbiguityPair>& pairs);
+    std::optional<FixedOffset> fix(const std::vector<AmbiguityPair>& pairs, double least_success);
     void hold(const std::vector<AmbiguityPair>& pairs, const VectorXd& whole);
 
     CarrierParameters p_;
@@ -76,7 +77,9 @@ private:
     std::vector<SingleDifference> present_;  // of the last epoch
     std::map<std::pair<Constellation, Signal>, Group> groups_;
     std::optional<GpsTime> time_, fixed_since_;
-    int misfits_ = 0;  // epochs in a row in which most phases did not fit
+    int misfits_ = 0;                               // epochs in a row in which most phases did not fit
+    double misfit_squares_ = 0, misfit_count_ = 0;  // of this epoch's phases, in their expected variances
+    double excess_ = 1;                             // of the variances, as the misfits of the last seconds show it
 };
 
 double CarrierFilter::State::variance_of(const StateName& name, const Spacing& spacing) const {
@@ -180,6 +183,8 @@ bool CarrierFilter::State::use_phases(Group group, GpsTime time) {
             if (std::abs(e.misfit(i)) > std::max(misfit_m, misfit_deviations * std::sqrt(expected(i))))
                 slipped.push_back(static_cast<std::size_t>(i) + 1);
         if (slipped.empty()) {
+            misfit_squares_ += e.misfit.cwiseAbs2().cwiseQuotient(expected).sum();
+            misfit_count_ += static_cast<double>(e.misfit.size());
             state_.absorb(e.design, e.misfit, e.noise);
             return fits;
         }
@@ -214,12 +219,21 @@ std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const Single
         std::ranges::stable_sort(group, std::ranges::greater(), [](const auto* d) { return d->elevation; });
         use_codes(group, passed);
     }
-    std::size_t fitting = 0;
+    std::size_t fitting = 0;  // groups
     for (const auto& [name, group] : groups_)
-        fitting += use_phases(group, time) ? 1 : 0;
+        if (use_phases(group, time)) ++fitting;
     misfits_ = 2 * fitting >= groups_.size() ? 0 : misfits_ + 1;
     if (contradicted()) return std::nullopt;
-    return CarrierOffset{state_.values.head<3>(), state_.covariance.topLeftCorner<3, 3>()};
+    follow_misfits(passed);
+    return CarrierOffset{state_.values.head<3>(), excess_ * state_.covariance.topLeftCorner<3, 3>()};
+}
+
+// Phases that fit worse than their variances expect make a solution that is worse by as much.
+void CarrierFilter::State::follow_misfits(Seconds passed) {
+    constexpr double averaged_over_s = 20, most = 25;
+    const double seen = misfit_count_ > 0 ? std::clamp(misfit_squares_ / misfit_count_, 1.0, most) : 1;
+    excess_ += -std::expm1(-passed.value() / averaged_over_s) * (seen - excess_);
+    misfit_squares_ = misfit_count_ = 0;
 }
 
 std::vector<AmbiguityPair> CarrierFilter::State::pairs(double most_variance, Seconds tracked) const {
@@ -241,7 +255,7 @@ std::vector<AmbiguityPair> CarrierFilter::State::pairs(double most_variance, Sec
     return pairs;
 }
 
-std::optional<FixedOffset> CarrierFilter::State::fix(const std::vector<AmbiguityPair>& pairs) {
+std::optional<FixedOffset> CarrierFilter::State::fix(const std::vector<AmbiguityPair>& pairs, double least_success) {
     const auto count = static_cast<Index>(pairs.size());
     const MatrixXd& p = state_.covariance;
     VectorXd floats(count);
@@ -257,12 +271,12 @@ std::optional<FixedOffset> CarrierFilter::State::fix(const std::vector<Ambiguity
         covariance.col(i) = differenced.col(pair.at) - differenced.col(pair.reference);
     }
     const auto found = search_integers(floats, covariance);
-    if (!found || found->success < p_.least_success || found->ratio() < p_.least_ratio) return std::nullopt;
+    if (!found || found->success < least_success || found->ratio() < p_.least_ratio) return std::nullopt;
     const Eigen::LDLT<MatrixXd> weights(covariance);
     const MatrixXd of_place = differenced.leftCols<3>();
     FixedOffset fixed;
     fixed.offset = state_.values.head<3>() - of_place.transpose() * weights.solve(floats - found->best);
-    fixed.covariance = p.topLeftCorner<3, 3>() - of_place.transpose() * weights.solve(of_place);
+    fixed.covariance = excess_ * (p.topLeftCorner<3, 3>() - of_place.transpose() * weights.solve(of_place));
     fixed.ratio = found->ratio();
     fixed.ambiguities = static_cast<int>(count);
     if (!fixed_since_) fixed_since_ = time_;
@@ -304,7 +318,8 @@ std::optional<FixedOffset> CarrierFilter::State::fix() {
         const std::vector<AmbiguityPair> chosen = pairs(variance_of_best(part.share), part.tracked);
         if (chosen.size() < least_pairs || chosen.size() == last) continue;
         last = chosen.size();
-        if (auto fixed = fix(chosen)) return fixed;
+        const double least = part.share < 1 ? p_.least_success_of_part : p_.least_success;
+        if (auto fixed = fix(chosen, least)) return fixed;
     }
     fixed_since_.reset();
     return std::nullopt;

@@ -106,7 +106,7 @@ struct DifferentialParameters {
 /// the baseline is that of differences between both ends.
 struct CarrierParameters {
     Metres code_floor{0.6}, code_at_zenith{0.8};  ///< of a code: √(floor² + (at_zenith/sin e)²), more below 40 dBHz
-    Metres phase_floor{0.003}, phase_at_zenith{0.003};  ///< the same of a phase
+    Metres phase_floor{0.005}, phase_at_zenith{0.005};  ///< the same of a phase
     Seconds code_memory{100};                           ///< for which errors of a code last
     MetresPerSecond per_age{0.0015};                    ///< of both, for each second that the reference's data are old
     double ionosphere_per_length = 1.5e-6;              ///< at L1, slant
@@ -117,12 +117,13 @@ struct CarrierParameters {
     Seconds wet_memory{7200};
     Angle integers_from = Angle::degrees(12);  ///< elevation of satellites whose ambiguities are fixed
     double least_ratio = 3;                    ///< of the ratio test
-    double least_success = 0.9;                ///< of IntegerCandidates::success
+    double least_success = 0.99;               ///< of IntegerCandidates::success
+    double least_success_of_part = 0.999;      ///< where ambiguities are left out
     Seconds hold_after{5};                     ///< since they were fixed without a break, ambiguities are held
     Seconds memory{30};                        ///< of an ambiguity whose signal is missed
     int most_misfits = 3;           ///< epochs in which most phases contradict what is held, until all begins anew
     double told_per_length = 1e-6;  ///< of the reported accuracies, beside the filter's
-    Metres told_floor{0.005};       ///< the same
+    Metres told_floor{0.002};       ///< the same
 };
 
 /// What the receiver must hear of the satellites' data.
