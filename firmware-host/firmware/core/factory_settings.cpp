@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/core/port.hpp"
 #include "firmware/core/state_tracker.hpp"
 #include "world/gnss/signal.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "base/core/words.hpp"
 #include "firmware/messages/make_message.hpp"
+#include "firmware/ublox/config/config_keys.hpp"
 #include "receiver/protocol/ubx_messages.hpp"
 #include "run/fault/known_names.hpp"
 
