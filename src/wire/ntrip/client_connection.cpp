@@ -201,7 +201,11 @@ private:
             std::size_t count = 0;
             const AsioError error =
                 wait([&](auto done) { stream.async_read_some(boost::asio::buffer(piece_), done); }, &count);
-            if (error) return end(error, answer.verdict().has_value(), outcome);
+            if (error) {
+                answer.finish();
+                outcome.verdict = answer.verdict();
+                return end(error, answer.verdict().has_value(), outcome);
+            }
             const Bytes heard = answer.feed(ByteSpan(piece_).first(count));
             if (!answer.verdict()) continue;
             const bool first = !outcome.verdict;
@@ -215,7 +219,9 @@ private:
                 inbox.connect(outcome.verdict->version, shown_uri(question.address));
                 began();
             }
-            if (!heard.empty()) inbox.put(heard);
+            if (heard.empty()) continue;
+            outcome.brought = true;
+            inbox.put(heard);
         }
         outcome.problem = "the caster has ended the stream";
     }

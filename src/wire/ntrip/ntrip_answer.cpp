@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/core/number_text.hpp"
 #include "base/core/words.hpp"
 #include "wire/ntrip/ntrip_messages.hpp"
 
@@ -18,6 +19,10 @@ constexpr std::string_view icy = "ICY 200 OK\r\n", table_line = "SOURCETABLE 200
 
 bool may_become(std::string_view begin, std::string_view whole) {
     return whole.starts_with(begin.substr(0, whole.size()));
+}
+
+Kind refusal_of(unsigned status) {
+    return status == 401 ? Kind::bad_password : status == 404 ? Kind::no_such_mount : Kind::refused;
 }
 
 std::string first_line(std::string_view text) {
@@ -78,6 +83,14 @@ public:
         Bytes rest(pending_.begin(), pending_.end());
         pending_.clear();
         return rest;
+    }
+
+    void finish() {
+        over = true;
+        constexpr std::size_t status_at = 9;  // behind "HTTP/1.1 "
+        if (verdict || state_ != State::http || line_.size() <= status_at) return;
+        const unsigned status = number_in<unsigned>(line_.substr(status_at, 3)).value_or(0);
+        decide(status >= 300 ? refusal_of(status) : Kind::foreign, 1);
     }
 
     std::optional<NtripVerdict> verdict;
@@ -177,13 +190,9 @@ private:
             decide(Kind::table, version);
         else if (status == 200 && (kind.starts_with("gnss/") || kind == "application/octet-stream"))
             decide(Kind::stream, 2);
-        else if (status == 401)
-            decide(Kind::bad_password, version);
-        else if (status == 404)
-            decide(Kind::no_such_mount, version);
         else
             // A page for people: a web server answers there.
-            decide(status == 200 ? Kind::foreign : Kind::refused, version);
+            decide(status == 200 ? Kind::foreign : refusal_of(status), version);
     }
 
     static constexpr std::size_t longest_header_name = 40;
@@ -200,6 +209,7 @@ NtripAnswer::NtripAnswer(NtripAnswer&&) noexcept = default;
 NtripAnswer& NtripAnswer::operator=(NtripAnswer&&) noexcept = default;
 
 Bytes NtripAnswer::feed(ByteSpan bytes) { return impl_->feed(bytes); }
+void NtripAnswer::finish() { impl_->finish(); }
 const std::optional<NtripVerdict>& NtripAnswer::verdict() const { return impl_->verdict; }
 bool NtripAnswer::over() const { return impl_->over; }
 

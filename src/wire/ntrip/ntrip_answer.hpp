@@ -34,6 +34,8 @@ public:
 
     /// What of `bytes` is what was asked for, without heads and the frames of chunks.
     Bytes feed(ByteSpan bytes);
+    /// The caster has hung up: of a head that is not whole its first line counts, which is all that some casters say.
+    void finish();
     /// Nothing until the head is there.
     [[nodiscard]] const std::optional<NtripVerdict>& verdict() const;
     /// The answer has come to its end, or to something that is none: nothing more comes of it.

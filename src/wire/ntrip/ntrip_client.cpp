@@ -62,7 +62,7 @@ private:
             inbox_.disconnect();
             if (line_.stopped()) return;
             inbox_.tell_problem(shown_uri(settings_.address), problem_of(outcome));
-            if (outcome.streamed) pause_s = first_pause_s;
+            if (outcome.brought) pause_s = first_pause_s;
             line_.rest(pause_s * (1 + pause_spread * (pauses_.uniform() - 0.5)));
             pause_s = std::min(2 * pause_s, longest_pause_s);
         }

@@ -27,7 +27,6 @@ void read_authorisation(std::string_view header, NtripRequest& request) {
     if (colon == std::string::npos) return;
     request.user = pair->substr(0, colon);
     request.password = pair->substr(colon + 1);
-    request.authorised_by = true;
 }
 
 std::string plain_head(std::string_view status_line, std::string_view type, std::size_t length) {

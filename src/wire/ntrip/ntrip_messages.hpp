@@ -31,8 +31,7 @@ struct NtripRequest {
     std::string mount;           ///< without "/"; empty: the source table
     int version = 1;             ///< of NTRIP, 1 or 2
     bool chunked = false;        ///< HTTP/1.1, which an answer without an end needs chunks for
-    std::string user, password;  ///< of the header Authorization
-    bool authorised_by = false;  ///< that header is there and has both
+    std::string user, password;  ///< of the header Authorization; empty: it has none
     std::string gga;             ///< of the header Ntrip-GGA; empty: it is not there
 };
 /// Reads the head of a request, the empty line at its end included. Nothing for what is no request in HTTP.

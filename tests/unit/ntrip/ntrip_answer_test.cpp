@@ -76,6 +76,25 @@ TEST(NtripAnswer, MayBeARefusal) {
     EXPECT_EQ(busy.verdict->line, "HTTP/1.1 503 Service Unavailable");
 }
 
+// RTKLIB's caster says no more.
+TEST(NtripAnswer, MayBeALineAndNothing) {
+    for (const auto& [line, kind] : {std::pair{"HTTP/1.0 401 Unauthorized\r\n", Kind::bad_password},
+                                     {"HTTP/1.0 404 No\r\n", Kind::no_such_mount},
+                                     {"HTTP/1.0 503 Busy\r\n", Kind::refused},
+                                     {"HTTP/1.0 200 OK\r\n", Kind::foreign}}) {
+        NtripAnswer answer;
+        answer.feed(to_bytes(line));
+        EXPECT_FALSE(answer.verdict());
+        answer.finish();
+        ASSERT_TRUE(answer.verdict()) << line;
+        EXPECT_EQ(answer.verdict()->kind, kind) << line;
+        EXPECT_EQ(answer.verdict()->line + "\r\n", line);
+    }
+    NtripAnswer nothing;
+    nothing.finish();
+    EXPECT_FALSE(nothing.verdict());
+}
+
 TEST(NtripAnswer, MayBeOfSomebodyElse) {
     for (const char* foreign : {"SSH-2.0-OpenSSH_9.2\r\n", "HTTP/1.1 200 OK\r\nContent-Type: text/html\r\n\r\n<html>",
                                 "HTTP/1.1 what\r\n\r\n", "\x1b[2J garbage", "ICX"}) {

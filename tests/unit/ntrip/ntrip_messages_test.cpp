@@ -100,7 +100,7 @@ TEST(NtripRequest, ThatIsNoneIsNone) {
     const auto odd = parse_ntrip_request("GET /M?a=b HTTP/1.1\r\nAuthorization: Basic !!\r\n\r\n");
     ASSERT_TRUE(odd);
     EXPECT_EQ(odd->mount, "M");
-    EXPECT_FALSE(odd->authorised_by);
+    EXPECT_EQ(odd->user, "");
     EXPECT_EQ(odd->version, 1);
 }
 

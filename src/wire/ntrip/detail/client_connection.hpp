@@ -23,7 +23,8 @@ struct ClientQuestion {
 /// What became of a conversation that is over.
 struct ClientOutcome {
     bool connected = false;               ///< somebody listens there
-    bool streamed = false;                ///< corrections came
+    bool streamed = false;                ///< what was asked for was granted
+    bool brought = false;                 ///< corrections came
     std::optional<NtripVerdict> verdict;  ///< nothing: no answer came
     std::string problem;                  ///< why it is over, where no verdict says so
     std::string table;                    ///< that came in place of corrections
