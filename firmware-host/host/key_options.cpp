@@ -22,7 +22,7 @@ void KeyOptions::add(CLI::App& command, const std::string& option, const std::st
 
 void KeyOptions::add_flag(CLI::App& command, const std::string& option, const std::string& key, const std::string& toml,
                           const std::string& help) {
-    Row& row = rows_.emplace_back(Row{option, key, false, toml});
+    Row& row = rows_.emplace_back(Row{option, key, false, false, toml});
     command.add_flag_callback(
         option, [&row] { row.typed = row.toml; }, help);
 }

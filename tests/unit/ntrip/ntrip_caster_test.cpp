@@ -15,8 +15,7 @@ namespace {
 
 using test::CasterBench;
 using test::comes_true;
-
-constexpr std::string_view here = "$GPGGA,092725.00,4717.11399,N,00833.91590,E,1,08,1.01,499.6,M,48.0,M,,*5B";
+using test::here;
 
 // A client by hand.
 class RawClient {

@@ -9,8 +9,7 @@ namespace {
 
 using test::CasterBench;
 using test::comes_true;
-
-constexpr std::string_view here = "$GPGGA,092725.00,4717.11399,N,00833.91590,E,1,08,1.01,499.6,M,48.0,M,,*5B";
+using test::here;
 
 std::unique_ptr<NtripClient> client_of(const std::string& uri, int position_every_s = 10) {
     NtripClientSettings settings{parse_ntrip_uri(uri).value(), std::chrono::seconds(position_every_s), 1};

@@ -14,6 +14,8 @@
 
 namespace skyloop::test {
 
+inline constexpr std::string_view here = "$GPGGA,092725.00,4717.11399,N,00833.91590,E,1,08,1.01,499.6,M,48.0,M,,*5B";
+
 /// Bytes that a test hands in; keeps what clients say of where they are.
 class TestSource : public CorrectionsSource, public std::enable_shared_from_this<TestSource> {
 public:
