@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const GpsTime begin = to_gps_time(2400, 0.0);
+const GpsTime caster_begin = to_gps_time(2400, 0.0);
 
 std::shared_ptr<PortCorrections> base_port() {
     SourceRecord about;
@@ -44,9 +44,9 @@ TEST(PortCorrections, GiveEachClientWhatComesAfterIt) {
     const auto port = base_port();
     const Bytes first = observations(1074, only_l1), second = observations(1084, only_l1);
     const auto early = port->open();
-    EXPECT_TRUE(port->hear(first, begin));
+    EXPECT_TRUE(port->hear(first, caster_begin));
     const auto late = port->open();
-    EXPECT_TRUE(port->hear(second, begin));
+    EXPECT_TRUE(port->hear(second, caster_begin));
     Bytes both = first;
     both.insert(both.end(), second.begin(), second.end());
     EXPECT_EQ(early->take(), both);
@@ -63,9 +63,9 @@ TEST(PortCorrections, AreRtcmAloneAndWhole) {
     Bytes stream = to_bytes("$GNRMC,1*00\r\n");
     stream.insert(stream.end(), frame.begin(), frame.end());
     const ByteSpan bytes(stream);
-    EXPECT_FALSE(port->hear(bytes.first(20), begin));
+    EXPECT_FALSE(port->hear(bytes.first(20), caster_begin));
     EXPECT_TRUE(client->take().empty());
-    EXPECT_TRUE(port->hear(bytes.subspan(20), begin));
+    EXPECT_TRUE(port->hear(bytes.subspan(20), caster_begin));
     EXPECT_EQ(client->take(), frame);
 }
 
@@ -74,7 +74,7 @@ TEST(PortCorrections, KeepNoMoreThanTheNewest) {
     const auto client = port->open();
     const Bytes frame = encode_rtcm3(Bytes(1000, 0x43));
     for (int i = 0; i < 1000; ++i)
-        port->hear(frame, begin);
+        port->hear(frame, caster_begin);
     const Bytes taken = client->take();
     EXPECT_LE(taken.size(), 256U << 10U);
     EXPECT_GT(taken.size(), 250U << 10U);
@@ -85,7 +85,7 @@ TEST(PortCorrections, TellTheSourceTableWhatHasBeenSent) {
     const auto port = base_port();
     EXPECT_THAT(port->table_line(false), HasSubstr(";RTCM 3.3;;0;;none;;10.00;20.00;0;0;skyloop;none;N;N;0;"));
     for (int i = 0; i < 11; ++i) {
-        const GpsTime now = begin + std::chrono::seconds(i);
+        const GpsTime now = caster_begin + std::chrono::seconds(i);
         if (i % 5 == 0) port->hear(place_at(Geodetic::degrees(46.4775, -30.7326, 77)), now);
         port->hear(observations(1074, only_l1), now);
         port->hear(observations(1124, only_l1), now);
@@ -93,7 +93,7 @@ TEST(PortCorrections, TellTheSourceTableWhatHasBeenSent) {
     }
     EXPECT_THAT(port->table_line(true), HasSubstr(";1005(5),1074(1),1124(0.5);1;GPS+BDS;none;;46.48;-30.73;0;0;"));
     EXPECT_THAT(port->table_line(true), HasSubstr(";B;N;"));
-    port->hear(observations(1077, l1_and_l2), begin);
+    port->hear(observations(1077, l1_and_l2), caster_begin);
     EXPECT_THAT(port->table_line(true), HasSubstr(";2;GPS+BDS;"));
 }
 
