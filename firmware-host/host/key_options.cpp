@@ -14,6 +14,7 @@ void KeyOptions::add(CLI::App& command, const std::string& option, const std::st
                      std::string_view more) {
     const KeyEntry& entry = scenario_key(key, kind);
     Row& row = rows_.emplace_back(Row{option, key, entry.type == KeyType::number && more.empty()});
+    row.text = entry.type == KeyType::text;
     CLI::Option* added = command.add_option(option, row.typed, key_help(entry) + std::string(more));
     if (row.number) added->type_name("FLOAT");
     if (entry.type == KeyType::word) added->type_name(fmt::format("TEXT:{{{}}}", fmt::join(entry.choices, ",")));
@@ -21,7 +22,7 @@ void KeyOptions::add(CLI::App& command, const std::string& option, const std::st
 
 void KeyOptions::add_flag(CLI::App& command, const std::string& option, const std::string& key, const std::string& toml,
                           const std::string& help) {
-    Row& row = rows_.emplace_back(Row{option, key, false, toml});
+    Row& row = rows_.emplace_back(Row{option, key, false, false, toml});
     command.add_flag_callback(
         option, [&row] { row.typed = row.toml; }, help);
 }
@@ -37,7 +38,8 @@ std::vector<ScenarioChange> KeyOptions::changes() const {
         if (row.typed.empty()) continue;
         double number = 0;
         const char* end = row.typed.data() + row.typed.size();
-        const bool is_number = row.toml.empty() && std::from_chars(row.typed.data(), end, number).ptr == end;
+        const bool is_number =
+            row.toml.empty() && !row.text && std::from_chars(row.typed.data(), end, number).ptr == end;
         const std::string toml = !row.toml.empty() ? row.toml
                                  : is_number       ? campaign_value(number).toml
                                                    : quoted_value(row.typed).toml;
@@ -49,7 +51,8 @@ std::vector<ScenarioChange> KeyOptions::changes() const {
 std::string KeyOptions::computing() const {
     std::string text;
     for (const Row& row : rows_)
-        if (!row.typed.empty() && row.key != "run.speed" && row.key != "receiver.0.power")
+        if (!row.typed.empty() && row.key != "run.speed" && row.key != "receiver.0.power" &&
+            row.key != "receiver.0.corrections" && row.key != "caster.listen")
             text += fmt::format("\n{}{}", row.option, row.toml.empty() ? " " + row.typed : "");
     return text;
 }

@@ -17,10 +17,12 @@
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/load_track.hpp"
 #include "run/emulator/real_time.hpp"
+#include "run/emulator/run_caster.hpp"
 #include "run/emulator/wires.hpp"
 #include "run/fault/timeline.hpp"
 #include "run_session.hpp"
 #include "run_watch.hpp"
+#include "wire/ntrip/ntrip_address.hpp"
 
 namespace skyloop::host {
 namespace {
@@ -66,6 +68,7 @@ void say_where(const RunSession& session, const std::vector<Station>& stations, 
     if (!watch.url().empty()) say(fmt::format("control: {}\n", watch.url()));
     for (std::size_t i = 0; i < watch.outputs().size(); ++i)
         say(fmt::format("output {}: {}\n", i, watch.outputs()[i]->description()));
+    if (!watch.caster().empty()) say(fmt::format("caster: {}\n", watch.caster()));
     if (!watch.mavlink().empty()) say(fmt::format("mavlink: {}\n", watch.mavlink()));
 }
 
@@ -117,6 +120,8 @@ Action add_run_command(CLI::App& app) {
                      "Of the loop on this machine: auto (real-time where allowed), normal")
         ->check(CLI::IsMember({"auto", "normal"}));
     command->add_flag("--wait-for-client", options->wait_for_client, "Time begins when each port has a client");
+    options->keys.add(*command, "--corrections", "receiver.0.corrections");
+    options->keys.add(*command, "--caster", "caster.listen");
     command->add_option("--control", options->control,
                         "HTTP control and the live page: [HOST:]PORT, on 127.0.0.1 unless a host is given");
     command->add_option("--token", options->token, "That clients of --control must show; made at random off loopback")
@@ -214,6 +219,7 @@ void print_receiver(const ReceiverEntry& entry, const Station& station, bool of_
                first_baud(receiver), 1e9 / static_cast<double>(receiver.settings().navigation_period.count()));
     for (const std::string& port : entry.ports)
         fmt::print("port        {}\n", port);
+    if (!entry.corrections.empty()) fmt::print("corrections {}\n", without_secrets(entry.corrections));
     if (!entry.power.empty()) fmt::print("power       {}\n", entry.power);
 }
 
@@ -246,6 +252,7 @@ void print_plan(const Scenario& scenario, const Assembly& assembly) {
         print_receiver(scenario.receivers[i], emulator.stations()[i], scenario.receivers.size() > 1);
     for (const OutputSettings& output : scenario.outputs)
         fmt::print("output      {}\n", output.uri);
+    if (!scenario.caster.listen.empty()) fmt::print("caster      {}\n", scenario.caster.listen);
     fmt::print("seed        {}\n", scenario.run.seed);
     print_timeline(scenario, assembly);
 }
@@ -263,6 +270,8 @@ int check(const RunOptions& options) {
     mode.only_checked = true;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(with_other_mistakes(assembly.error(), *scenario, data_folders(), mode.now));
+    if (const auto caster = RunCaster::check(*scenario, *assembly->emulator); !caster)
+        return messages.error(caster.error());
     for (const auto& warning : {vehicle_warning(*scenario), pause_warning(*scenario)})
         if (warning) assembly->warnings.push_back(*warning);
     messages.warnings(assembly->warnings);

@@ -40,7 +40,7 @@ public:
 private:
     struct Row {
         std::string option, key;
-        bool number = false;
+        bool number = false, text = false;
         std::string toml{};  // of a flag
         std::string typed{};
     };

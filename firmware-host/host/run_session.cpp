@@ -142,6 +142,7 @@ bool RunSession::in_vain(const RunWatch& watch) const {
     for (const Station& station : assembly_.emulator->stations()) {
         if (station.power() != nullptr) return false;  // a real device is switched
         for (const Wire& wire : station.wires()) {
+            if (wire.one_way) continue;
             if (!wire.link.ended()) return false;
             wired = true;
         }
@@ -236,10 +237,21 @@ std::string RunSession::port_name(const Station& station, std::size_t wire) cons
     return fmt::format("{}port {}{}", prefix(station), wire, of_port);
 }
 
+void RunSession::tell_corrections(const CorrectionsWire& wire, const std::string& name) const {
+    const NtripClientCounts counts = wire.counts();
+    messages_.info(fmt::format("{}: {} messages of corrections in {} bytes, {} connections", name, wire.messages(),
+                               counts.bytes, counts.connections));
+    if (counts.bytes_lost > 0)
+        messages_.warning(
+            fmt::format("{}: {} bytes of corrections were lost: time stood still", name, counts.bytes_lost));
+}
+
 void RunSession::tell_wire(const Station& station, std::size_t wire) const {
-    const auto& [port, link] = station.wires()[wire];
+    const Link& link = station.wires()[wire].link;
     const LinkCounters& counted = link.counters();
     const std::string name = port_name(station, wire);
+    if (const CorrectionsWire* corrections = station.wires()[wire].corrections)
+        return tell_corrections(*corrections, name);
     messages_.info(fmt::format("{}: {} bytes out, {} in, {} while nobody listened", name, counted.bytes_out,
                                counted.bytes_in, counted.bytes_unheard));
     if (counted.bytes_garbled > 0)

@@ -40,6 +40,7 @@ private:
     void tell_that_it_was_cut() const;
     void tell_counts(const Station& station) const;
     void tell_overload(const Station& station) const;
+    void tell_corrections(const CorrectionsWire& wire, const std::string& name) const;
     void tell_wire(const Station& station, std::size_t wire) const;
     // What the buildings around a receiver have to say that has not been said yet.
     std::optional<std::string> new_notice(std::size_t station);

@@ -152,6 +152,7 @@ Result<std::unique_ptr<RunWatch>> RunWatch::start(const Scenario& scenario, Asse
     if (const auto opened = watch->open_control(options, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_mavlink(options.mavlink, commands); !opened) return fail(opened.error());
     if (const auto opened = watch->open_outputs(options.live); !opened) return fail(opened.error());
+    if (const auto opened = watch->open_caster(options.live); !opened) return fail(opened.error());
     // After everything that may be refused: it empties the files of a former run.
     if (const auto begun = watch->begin(); !begun) return fail(begun.error());
     return watch;
@@ -220,6 +221,11 @@ Result<void> RunWatch::open_control(const WatchOptions& options, CommandQueue& c
     };
     if (judge_)
         sources.verdicts = [this] { return verdict_states(verdicts_ ? *verdicts_ : judge_->so_far(), !verdicts_); };
+    sources.caster = [this]() -> std::optional<CasterStatus> {
+        if (!caster_) return std::nullopt;
+        const NtripCasterCounts c = caster_->counts();
+        return CasterStatus{caster_->description(), c.clients, c.served, c.refused, c.slow};
+    };
     StatusSetup setup{scenario_.name, assembly_.start, assembly_.end, planned_bars()};
     setup.every_epoch = options.live || (emulator.feeds() != nullptr && emulator.feeds()->leads());
     board_ = std::make_unique<StatusBoard>(std::move(setup), &emulator.stations(), sources);
@@ -261,6 +267,16 @@ Result<void> RunWatch::open_outputs(bool live) {
     return {};
 }
 
+// What others are told belongs to a live run.
+Result<void> RunWatch::open_caster(bool live) {
+    if (scenario_.caster.listen.empty() || !live) return {};
+    auto caster = RunCaster::start(scenario_, *assembly_.emulator, assembly_.place);
+    if (!caster) return fail(caster.error());
+    caster_ = std::move(*caster);
+    if (std::string warning = caster_->warning(); !warning.empty()) assembly_.warnings.push_back(std::move(warning));
+    return {};
+}
+
 std::vector<std::string> RunWatch::take_news() {
     std::vector<std::string> all;
     for (std::size_t i = 0; i < outputs_.size(); ++i)
@@ -272,7 +288,7 @@ std::vector<std::string> RunWatch::take_news() {
 bool RunWatch::serves() const {
     const Emulator& emulator = *assembly_.emulator;
     const bool led = emulator.feeds() != nullptr && emulator.feeds()->leads();
-    return led || server_ || mavlink_ || judge_ || emulator.stations().front().recorder() != nullptr ||
+    return led || server_ || caster_ || mavlink_ || judge_ || emulator.stations().front().recorder() != nullptr ||
            std::any_of(outputs_.begin(), outputs_.end(), [](const auto& output) { return output->failure().empty(); });
 }
 
@@ -281,6 +297,7 @@ void RunWatch::finish_outputs() {
         output->finish();
         assembly_.outputs.push_back({output->description(), output->counts()});
     }
+    if (caster_) assembly_.caster = CasterSummary{caster_->description(), caster_->counts()};
 }
 
 int RunWatch::finish(const Messages& messages, RunEnd end) {

@@ -14,6 +14,7 @@
 #include "run/control/control_server.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/command_queue.hpp"
+#include "run/emulator/run_caster.hpp"
 #include "run/emulator/run_files.hpp"
 #include "run/emulator/status_board.hpp"
 #include "run/fault/run_observer.hpp"
@@ -67,6 +68,8 @@ public:
     [[nodiscard]] std::string url() const { return server_ ? server_->url() : std::string(); }
     /// Where MAVLink is spoken; empty: nowhere.
     [[nodiscard]] std::string mavlink() const { return mavlink_ ? mavlink_->description() : std::string(); }
+    /// Where receivers' RTCM may be had, and as what; empty: nowhere.
+    [[nodiscard]] std::string caster() const { return caster_ ? caster_->description() : std::string(); }
     /// What is told to other programs beside the wires.
     [[nodiscard]] const std::vector<std::unique_ptr<RunOutput>>& outputs() const { return outputs_; }
     /// What has happened to them since the last call, in sentences.
@@ -86,6 +89,7 @@ private:
     Result<void> open_control(const WatchOptions& options, CommandQueue& commands);
     Result<void> open_mavlink(const std::string& address, CommandQueue& commands);
     Result<void> open_outputs(bool live);
+    Result<void> open_caster(bool live);
     [[nodiscard]] std::vector<TimelineBar> planned_bars() const;
     int report(const Messages& messages, const std::vector<Verdict>& verdicts) const;
 
@@ -98,6 +102,7 @@ private:
     std::unique_ptr<ControlServer> server_;  // before board_ is gone
     std::unique_ptr<MavlinkEndpoint> mavlink_;
     std::vector<std::unique_ptr<RunOutput>> outputs_;
+    std::optional<RunCaster> caster_;
 };
 
 }  // namespace skyloop::host

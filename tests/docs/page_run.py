@@ -16,7 +16,7 @@ from blocks import RUN, blocks_of, first_missing, steps_of
 from session import ROOT, SKYLOOP, open_folder
 
 # Ports that pages name: each run of a page takes free ones in their place, so that pages can be run side by side.
-PORTS = re.compile(r"(?<![\d.,])(2000|2217|2948|3240|5000|5503|5561|8080|9000|14550|14551|14560|29990)(?![\d.])")
+PORTS = re.compile(r"(?<![\d.,])(2000|2101|2217|2948|3240|5000|5503|5561|8080|9000|14550|14551|14560|29990)(?![\d.])")
 PATIENCE_S = 200
 
 

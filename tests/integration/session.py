@@ -59,10 +59,11 @@ def septentrio_that_sends(folder, *blocks):
 class Emulator:
     """`skyloop run`, or another command that has ports, in the background; `tty` is the path of its first port."""
 
-    def __init__(self, *arguments, command="run"):
+    def __init__(self, *arguments, command="run", env=None):
         # Unbuffered: a line that waits in a buffer of ours is one that select() does not tell of.
         self.process = subprocess.Popen([SKYLOOP, command, *map(str, arguments)], stdin=subprocess.DEVNULL,
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, bufsize=0)
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, bufsize=0,
+                                        env={**os.environ, **(env or {})})
         self.log = ""
         self.tty = None
         try:

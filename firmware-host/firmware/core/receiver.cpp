@@ -2,6 +2,7 @@
 
 #include "firmware/core/core.hpp"
 #include "firmware/makers.hpp"
+#include "firmware/sentences/nmea_report.hpp"
 
 namespace skyloop::firmware {
 
@@ -44,6 +45,15 @@ ReceiverCounters Receiver::counters() const { return core_->counters(); }
 const BoardProfile& Receiver::board() const { return core_->parts().board; }
 const NavigationState& Receiver::state() const { return *core_->parts().reported; }
 std::shared_ptr<const NavigationState> Receiver::kept_state() const { return core_->parts().reported; }
+std::string Receiver::position_sentence() const {
+    constexpr UbxMessageId gga{0xF0, 0x00};
+    const ReceiverParts& parts = core_->parts();
+    const NmeaReport report = nmea_report({parts.board, parts.maker->config(), *parts.reported});
+    if (!report.valid || !report.position) return {};
+    std::string sentence = to_string(make_nmea_message(gga, report).front());
+    sentence.erase(sentence.find_last_not_of("\r\n") + 1);
+    return sentence;
+}
 std::optional<GpsTime> Receiver::report_time() const { return core_->report_time(); }
 std::string Receiver::persistent_text() const { return core_->parts().maker->stored_text(); }
 

@@ -108,6 +108,9 @@ public:
     [[nodiscard]] const NavigationState& state() const;
     /// The same, for who looks at it after the next epoch.
     [[nodiscard]] std::shared_ptr<const NavigationState> kept_state() const;
+    /// What its GGA sentence says of it, without the end of the line, whether or not it sends one: where it is, for who
+    /// asks on its behalf. Empty while it has no valid position.
+    [[nodiscard]] std::string position_sentence() const;
     /// When the messages of the last epoch begin to leave; nothing when none do: it starts, is mute or does not
     /// navigate.
     [[nodiscard]] std::optional<GpsTime> report_time() const;

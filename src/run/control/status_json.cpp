@@ -165,6 +165,14 @@ Json message_json(const MessageCount& message) {
             {"count", message.count}};
 }
 
+Json caster_status_json(const CasterStatus& caster) {
+    return {{"address", caster.address},
+            {"clients", caster.clients},
+            {"served", caster.served},
+            {"refused", caster.refused},
+            {"dropped", caster.dropped}};
+}
+
 Json bars_json(const StatusSnapshot& snapshot) {
     return json_list(snapshot.timeline, [&](const TimelineBar& bar) { return bar_json(bar, snapshot.start); });
 }
@@ -206,6 +214,7 @@ std::string status_json(const StatusSnapshot& snapshot, const SeenLines& seen) {
         snapshot.receivers, [&](const ReceiverStatus& receiver) { return receiver_json(receiver, snapshot.start); });
     json["timeline"] = bars_json(snapshot);
     json["verdicts"] = json_list(snapshot.verdicts, verdict_status_json);
+    json["caster"] = or_null(snapshot.caster, caster_status_json);
     json["events"] = std::move(events);
     json["dialogue"] = std::move(dialogue);
     json["messages"] = json_list(snapshot.messages, message_json);

@@ -20,6 +20,7 @@
 #include "run/emulator/real_time.hpp"
 #include "run/output/run_output.hpp"
 #include "run/scenario/scenario.hpp"
+#include "wire/ntrip/ntrip_caster.hpp"
 #include "world/propagation/atmosphere_losses.hpp"
 
 namespace skyloop::inline run {
@@ -58,6 +59,12 @@ struct OutputSummary {
     OutputCounts counts;
 };
 
+/// What became of the run's own caster.
+struct CasterSummary {
+    std::string description;
+    NtripCasterCounts counts;
+};
+
 /// A run ready to go, and what its user should be told first.
 struct Assembly {
     std::unique_ptr<Geoid> geoid;  ///< outlives the emulator, which looks up undulations in it
@@ -72,6 +79,7 @@ struct Assembly {
     std::vector<std::string> warnings;
     std::optional<DeadlineGrants> deadlines{};  ///< that its loop was given; nothing: it has none to keep
     std::vector<OutputSummary> outputs{};       ///< of the run, once it is over
+    std::optional<CasterSummary> caster{};      ///< the same; nothing: there was none
     std::vector<std::string> details;           ///< for those who ask: what was read, and from where
 };
 

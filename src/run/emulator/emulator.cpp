@@ -73,7 +73,7 @@ bool Emulator::all_connected() {
     bool all = true;
     for (Station& station : parts_.stations)
         for (std::size_t i = 0; i < station.wires().size(); ++i)
-            all = station.transport(i).line().connected && all;
+            all = (station.transport(i).line().connected || station.wires()[i].one_way) && all;
     return all;
 }
 

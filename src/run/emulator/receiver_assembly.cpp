@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -179,6 +180,27 @@ Result<Link> open_wire(const WireRequest& wire, const firmware::Receiver& receiv
     return Link(std::move(*transport), speed, InputPace::line);
 }
 
+Result<void> plug_in_corrections(PlannedStation& station, const WireRequest& wire, const SharedParts& shared,
+                                 std::size_t index) {
+    const PortSpeed speed = port_speed(station.parts.receiver, wire.port);
+    std::vector<Wire>& wires = station.parts.wires;
+    // In a repeated run the recording stands for the caster.
+    if (shared.mode.repeat) {
+        auto nobody = open_transport("file:/dev/null");
+        if (!nobody) return fail(nobody.error());
+        wires.push_back({wire.port, Link(std::move(*nobody), speed, InputPace::at_once), true});
+        return {};
+    }
+    auto address = parse_ntrip_uri(wire.uri);
+    if (!address) return fail(address.error());
+    const ReceiverEntry& entry = shared.scenario.receivers.at(index);
+    auto caster = std::make_unique<CorrectionsWire>(NtripClientSettings{
+        std::move(*address), std::chrono::seconds(entry.corrections_position_s), station.parts.seed});
+    CorrectionsWire* const end = caster.get();
+    wires.push_back({wire.port, Link(std::move(caster), speed, InputPace::at_once), true, end});
+    return {};
+}
+
 SimulationSetup simulation_setup(const SharedParts& shared, std::size_t index, const firmware::Receiver& receiver) {
     const double rate = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
     return {shared.navigation,
@@ -203,6 +225,24 @@ void remember_place(const SharedParts& shared, std::size_t index, const Simulati
     const Metres undulation =
         shared.geoid != nullptr ? shared.geoid->undulation(place->latitude, place->longitude, step) : Metres(0);
     receiver.remember(*place, undulation);
+}
+
+// Their times are those of the world outside. A recording has them already, with its own.
+Result<void> check_corrections(const ReceiverEntry& entry, const RunMode& mode) {
+    const bool live = !mode.virtual_time && mode.embedding == nullptr;
+    if (entry.corrections.empty() || live || mode.only_checked || mode.repeat) return {};
+    return fail(at_key(
+        "corrections",
+        {ErrorCode::usage, "corrections of a caster need time that passes; expected skyloop run, without --speed max"},
+        entry));
+}
+
+void warn_of_deaf_port(const std::vector<WireRequest>& wires, const firmware::BoardProfile& board,
+                       const ReceiverEntry& entry, std::vector<std::string>& warnings) {
+    const bool brought = std::any_of(wires.begin(), wires.end(), [](const WireRequest& w) { return w.corrections; });
+    if (brought && !firmware::abilities(board).corrections)
+        warnings.push_back(fmt::format("{}{} takes no corrections: nothing comes of those of a caster",
+                                       place_of("corrections", entry.told_at), board.name));
 }
 
 // What the keys of a receiver name.
@@ -230,6 +270,9 @@ Result<NamedParts> named_parts(const SharedParts& shared, std::size_t index, std
                  firmware::PortId::spi};
     auto wires = wires_of(entry, board ? *board : any);
     if (!wires) note(at_key("port", wires.error(), entry));
+    const auto corrections = corrections_of(entry, board ? *board : any);
+    if (!corrections) note(at_key("corrections", corrections.error(), entry));
+    if (const auto known = check_corrections(entry, shared.mode); !known) note(known.error());
     if (const auto known = check_power(shared, index, warnings); !known) note(known.error());
     if (!entry.state_file.empty()) {
         auto opened = StateFile::open(entry.state_file);
@@ -241,6 +284,7 @@ Result<NamedParts> named_parts(const SharedParts& shared, std::size_t index, std
     if (wrong) return fail(*wrong);
     parts.board = std::move(*board);
     parts.wires = std::move(*wires);
+    if (*corrections) parts.wires.push_back(**corrections);
     return parts;
 }
 
@@ -253,6 +297,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, board, index),
                                             receiver_seed(scenario.run, index), entry.power_up};
     warn_of_missing_usb(wires, board, entry, warnings);
+    warn_of_deaf_port(wires, board, entry, warnings);
     warn_of_untracked(scenario, board, options.settings, warnings);
     if (const auto checked = check_options(board, options, entry); !checked) return fail(checked.error());
     firmware::Receiver receiver(std::move(board), options);
@@ -306,6 +351,11 @@ Result<PlannedStation> plan_station(const SharedParts& shared, std::size_t index
 
 Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::size_t index) {
     for (const WireRequest& wire : station.wires) {
+        if (wire.corrections) {
+            const auto plugged = plug_in_corrections(station, wire, shared, index);
+            if (!plugged) return fail(of_receiver(plugged.error(), shared.scenario, index));
+            continue;
+        }
         auto link = open_wire(wire, station.parts.receiver, shared.mode, index);
         if (!link) return fail(of_receiver(link.error(), shared.scenario, index));
         if (shared.mode.virtual_time) link->transport().allow_waiting();

@@ -20,17 +20,30 @@ Json lateness_json(const LatenessHistogram& lateness) {
             {"histogram", bins}};
 }
 
+Json corrections_json(const CorrectionsWire& wire) {
+    const NtripClientCounts counts = wire.counts();
+    return {{"connected", counts.connected}, {"ntrip_version", counts.version}, {"connections", counts.connections},
+            {"messages", wire.messages()},   {"bytes", counts.bytes},           {"bytes_lost", counts.bytes_lost},
+            {"age_s", counts.age_s}};
+}
+
+Json caster_json(const CasterSummary& caster) {
+    return {{"address", caster.description},    {"clients", caster.counts.clients}, {"served", caster.counts.served},
+            {"refused", caster.counts.refused}, {"slow", caster.counts.slow},       {"bytes", caster.counts.bytes}};
+}
+
 Json ports_json(const std::vector<Wire>& wires) {
     Json ports = Json::array();
-    for (const auto& [port, link] : wires) {
-        const LinkCounters& c = link.counters();
-        ports.push_back({{"wire", link.transport().description()},
-                         {"port", firmware::port_names[static_cast<std::size_t>(port)]},
+    for (const Wire& wire : wires) {
+        const LinkCounters& c = wire.link.counters();
+        ports.push_back({{"wire", wire.link.transport().description()},
+                         {"port", firmware::port_names[static_cast<std::size_t>(wire.port)]},
                          {"bytes_out", c.bytes_out},
                          {"bytes_in", c.bytes_in},
                          {"bytes_unheard", c.bytes_unheard},
                          {"bytes_lost", c.bytes_lost},
                          {"bytes_garbled", c.bytes_garbled}});
+        if (wire.corrections != nullptr) ports.back()["corrections"] = corrections_json(*wire.corrections);
     }
     return ports;
 }
@@ -154,6 +167,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
     add_counts(summary, emulator.first());
     if (emulator.feeds() != nullptr) summary["feeds"] = feeds_json(*emulator.feeds());
     if (!assembly.outputs.empty()) summary["outputs"] = outputs_json(assembly.outputs);
+    if (assembly.caster) summary["caster"] = caster_json(*assembly.caster);
     if (assembly.deadlines) summary["real_time"] = grants_json(*assembly.deadlines);
     summary["warnings"] = assembly.warnings;
     if (emulator.stations().size() > 1) summary["receivers"] = receivers_json(emulator);

@@ -36,6 +36,14 @@ bool Station::busy() const {
                        [](const Wire& w) { return w.link.connected() || w.link.input_pending(); });
 }
 
+// A frame of corrections amid one of a client's would break both.
+bool Station::has_to_wait(std::size_t wire) const {
+    const Wire& own = parts_.wires[wire];
+    return own.one_way && std::any_of(parts_.wires.begin(), parts_.wires.end(), [&](const Wire& other) {
+               return !other.one_way && other.port == own.port && other.link.input_pending();
+           });
+}
+
 // A client in simulated time acts on all that has left by now.
 void Station::carry_out(const LoopTime& time, Dialogue* dialogue) {
     speak(time, dialogue);
@@ -99,7 +107,7 @@ bool Station::hear(std::size_t wire, GpsTime now, Dialogue* dialogue) {
     const auto take = [&](Bytes bytes) {
         any = hand_over(wire, faulty.to_receiver(std::move(bytes), now), now, dialogue) || any;
     };
-    if (wire < parts_.wires.size()) {
+    if (wire < parts_.wires.size() && !has_to_wait(wire)) {
         while (auto heard = parts_.wires[wire].link.receive(line_speed(wire), now))
             if (!heard->empty()) take(std::move(*heard));
     }
@@ -131,7 +139,11 @@ void Station::speak(const LoopTime& time, Dialogue* dialogue) {
         for (const firmware::Receiver::Sent& piece : pieces)
             if (piece.port == default_port(parts_.receiver.board()))
                 overheard_.insert(overheard_.end(), piece.bytes.begin(), piece.bytes.end());
+    for (const Tap& tap : taps_)
+        for (const firmware::Receiver::Sent& piece : pieces)
+            tap(piece, time.now);
     for (std::size_t i = 0; i < faulty_wires_.size(); ++i) {
+        if (i < parts_.wires.size() && parts_.wires[i].one_way) continue;
         std::vector<firmware::Receiver::Sent> own;
         for (const firmware::Receiver::Sent& piece : pieces) {
             if (piece.port != port_of(i)) continue;
@@ -147,7 +159,8 @@ void Station::speak(const LoopTime& time, Dialogue* dialogue) {
 }
 
 void Station::send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest) {
-    auto& [port, link] = parts_.wires[wire];
+    Link& link = parts_.wires[wire].link;
+    const PortId port = parts_.wires[wire].port;
     const std::optional<std::uint32_t> line_baud = faulty_wires_[wire].line_baud();
     for (const firmware::Receiver::Sent& piece : pieces)
         link.send(piece.bytes, speed_of(port, line_baud.value_or(piece.baud)), false);
@@ -241,6 +254,16 @@ void Station::report(const Trace& trace, Nanoseconds lateness, bool safe) {
     if (trace.epoch.fix.has_position()) ++counts_.epochs_with_fix;
     counts_.lateness.add(lateness);
     follow_settings(trace.truth.time);
+    tell_position();
+}
+
+// Casters make corrections for a place.
+void Station::tell_position() {
+    for (const Wire& wire : parts_.wires) {
+        if (wire.corrections == nullptr || !wire.corrections->wants_position()) continue;
+        if (std::string sentence = parts_.receiver.position_sentence(); !sentence.empty())
+            wire.corrections->tell_position(std::move(sentence));
+    }
 }
 
 std::uint64_t Station::total(std::uint64_t firmware::PortTotals::*of) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "firmware/core/receiver.hpp"
+#include "run/emulator/corrections_wire.hpp"
 #include "run/emulator/dialogue.hpp"
 #include "run/emulator/link.hpp"
 #include "run/emulator/moving_base.hpp"
@@ -33,6 +35,10 @@ std::uint32_t first_baud(const firmware::Receiver& receiver);
 struct Wire {
     firmware::PortId port = firmware::PortId::uart1;
     Link link;
+    /// It brings the port corrections, beside what other wires bring: nothing leaves by it, nobody is to be waited for
+    /// at its end, and what it has comes when no client of the port is amid something.
+    bool one_way = false;
+    CorrectionsWire* corrections = nullptr;  ///< its other end, where that is a caster; lives in `link`
 };
 
 /// What a run counted of one receiver.
@@ -64,6 +70,10 @@ public:
         std::unique_ptr<PowerSwitch> power{};           ///< of a real device, switched by power_cut; null: none
     };
     explicit Station(Parts parts);
+
+    /// Shows all that leaves the receiver's ports to one more, who may not wait, whatever is wrong with the wires.
+    using Tap = std::function<void(const firmware::Receiver::Sent& sent, GpsTime now)>;
+    void add_tap(Tap tap) { taps_.push_back(std::move(tap)); }
 
     /// The receiver starts; before anything else.
     void start(GpsTime now);
@@ -147,9 +157,12 @@ private:
     void send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest);
     [[nodiscard]] firmware::PortId port_of(std::size_t wire) const;
     [[nodiscard]] PortSpeed line_speed(std::size_t wire) const;
+    [[nodiscard]] bool has_to_wait(std::size_t wire) const;
+    void tell_position();
     void follow_settings(GpsTime now);
 
     Parts parts_;
+    std::vector<Tap> taps_;
     ActiveFaults faults_;
     bool faults_act_ = false;               // on receiver or wires, at the last look
     std::vector<FaultyWire> faulty_wires_;  // one more than none: what has no wire is recorded as if it had

@@ -248,6 +248,7 @@ bool StatusBoard::publish(GpsTime now, std::int64_t clock_ns) {
     snapshot->title = setup_.title;
     if (!receivers_.empty()) snapshot->leap_seconds = receivers_.front().fix.leap_seconds;
     if (sources_.pace) snapshot->pace = sources_.pace();
+    if (sources_.caster) snapshot->caster = sources_.caster();
     if (sources_.verdicts) snapshot->verdicts = sources_.verdicts();
     snapshot->receivers = receivers_;
     snapshot->timeline = bars_;

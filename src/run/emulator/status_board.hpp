@@ -21,6 +21,7 @@ struct StatusSources {
     /// 0 … 1 of an occurrence by the fault's name, at an instant; also of one that fades after its end.
     std::function<double(std::string_view fault, int occurrence, GpsTime now)> strength{};
     std::function<std::vector<VerdictStatus>()> verdicts{};
+    std::function<std::optional<CasterStatus>()> caster{};
     std::function<std::int64_t()> clock{};  ///< ns that never go back; nothing: the steady clock
 };
 

@@ -111,6 +111,13 @@ struct PaceStatus {
     bool virtual_time = false;
 };
 
+/// The run's own caster, and who hears it.
+struct CasterStatus {
+    std::string address;                                 ///< "127.0.0.1:2101 (BASE)"
+    std::uint64_t clients = 0;                           ///< now
+    std::uint64_t served = 0, refused = 0, dropped = 0;  ///< of all that came; dropped: they read too slowly
+};
+
 /// Everything at one instant. Immutable once published.
 struct StatusSnapshot {
     std::uint64_t sequence = 0;  ///< grows with each snapshot
@@ -123,6 +130,7 @@ struct StatusSnapshot {
     std::vector<ReceiverStatus> receivers;
     std::vector<TimelineBar> timeline;
     std::vector<VerdictStatus> verdicts;
+    std::optional<CasterStatus> caster;
     std::vector<std::shared_ptr<const DialogueLine>> dialogue;  ///< the last ones, ascending
     std::vector<MessageCount> messages;                         ///< of all that came, by receiver, wire, way and name
     std::vector<std::shared_ptr<const EventLine>> events;       ///< the last ones, ascending

@@ -9,6 +9,7 @@
 #include "base/core/words.hpp"
 #include "run/client/open_client.hpp"
 #include "wire/actuator/actuator_uri.hpp"
+#include "wire/ntrip/ntrip_address.hpp"
 #include "wire/transport/open_transport.hpp"
 
 namespace skyloop::inline run {
@@ -121,18 +122,24 @@ UsbFace usb_face(const BoardProfile& board, PortId port) {
     return {{usb.vendor_id, usb.product_id}, usb.release, usb.manufacturer, usb.product, usb.serial};
 }
 
+Result<PortId> port_of_board(std::string_view name, const BoardProfile& board) {
+    if (name.empty()) return default_port(board);
+    const auto names = names_of(board.ports);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+        return fail(ErrorCode::usage, fmt::format("{} has no port '{}'{}; expected {}", board.name, name,
+                                                  did_you_mean(name, names), fmt::join(names, ", ")));
+    return board.ports[static_cast<std::size_t>(found - names.begin())];
+}
+
 Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board) {
     const std::size_t equals = end_of_name(text);
     const bool named = equals != std::string_view::npos;
     WireRequest wire{default_port(board), std::string(named ? text.substr(equals + 1) : text)};
     if (named) {
-        const std::string_view name = text.substr(0, equals);
-        const auto names = names_of(board.ports);
-        const auto found = std::find(names.begin(), names.end(), name);
-        if (found == names.end())
-            return fail(ErrorCode::usage, fmt::format("port '{}': {} has no port '{}'{}; expected {}", text, board.name,
-                                                      name, did_you_mean(name, names), fmt::join(names, ", ")));
-        wire.port = board.ports[static_cast<std::size_t>(found - names.begin())];
+        const auto port = port_of_board(text.substr(0, equals), board);
+        if (!port) return fail(ErrorCode::usage, fmt::format("port '{}': {}", text, port.error().message));
+        wire.port = *port;
     }
     if (const auto client = client_of_uri(wire.uri)) {
         if (const auto known = check_client(*client); !known) return fail(known.error());
@@ -157,6 +164,21 @@ Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const Boar
         wires.push_back(std::move(*wire));
     }
     return wires;
+}
+
+Result<std::optional<WireRequest>> corrections_of(const ReceiverEntry& entry, const BoardProfile& board) {
+    if (entry.corrections.empty()) return std::nullopt;
+    const std::size_t equals = end_of_name(entry.corrections);
+    const bool named = equals != std::string::npos;
+    WireRequest wire{default_port(board), uri_of(entry.corrections), true};
+    if (const auto address = parse_ntrip_uri(wire.uri); !address)
+        return fail(ErrorCode::usage, "corrections " + address.error().message);
+    if (named) {
+        const auto port = port_of_board(std::string_view(entry.corrections).substr(0, equals), board);
+        if (!port) return fail(ErrorCode::usage, "corrections: " + port.error().message);
+        wire.port = *port;
+    }
+    return wire;
 }
 
 std::optional<std::uint32_t> speed_of_wires(const ReceiverEntry& entry) {

@@ -19,6 +19,7 @@ namespace skyloop::inline run {
 struct WireRequest {
     firmware::PortId port = firmware::PortId::uart1;
     std::string uri;
+    bool corrections = false;  ///< the URI is that of a caster's mount point, and nothing leaves by it
 };
 
 /// The port of a wire without a name: UART1, or the first port of a board that has no UART1.
@@ -34,6 +35,14 @@ Result<WireRequest> parse_wire(std::string_view text, const firmware::BoardProfi
 
 /// The wires of one receiver, as they were asked for; opens none. Without any in the scenario it is one pty.
 Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const firmware::BoardProfile& board);
+
+/// The same of what stands in `corrections`: a caster's mount point, and the port that its bytes reach. Nothing where a
+/// receiver has none. Fails with `usage`; no sentence has user or password.
+Result<std::optional<WireRequest>> corrections_of(const ReceiverEntry& entry, const firmware::BoardProfile& board);
+
+/// The port of a board by its name; of an empty one the default_port(). Fails with `usage` and a sentence that lists
+/// the board's ports.
+Result<firmware::PortId> port_of_board(std::string_view name, const firmware::BoardProfile& board);
 
 /// The speed behind the address of a network wire, bit/s: UART1 begins at it, as if a client had set it before it was
 /// connected. Nothing where no wire has one.

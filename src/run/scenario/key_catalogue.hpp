@@ -29,7 +29,7 @@ enum class KeyType {
     number_groups,  ///< a list of numbers, or of lists of them
     values,         ///< a list of what some other key takes
     place,          ///< [latitude, longitude] or [latitude, longitude, height]: degrees, metres above the ellipsoid
-    named_values,   ///< a table of numbers and flags, by names that are listed elsewhere
+    named_values,   ///< a table of numbers, flags and texts, by names that are listed elsewhere
     table,
     tables  ///< a list
 };

@@ -111,7 +111,7 @@ Json value_schema(const KeyEntry& key) {
         case KeyType::place:
             return place_schema(key);
         case KeyType::named_values:
-            return {{"type", "object"}, {"additionalProperties", {{"type", {"number", "boolean"}}}}};
+            return {{"type", "object"}, {"additionalProperties", {{"type", {"number", "boolean", "string"}}}}};
         default:
             return Json::object();
     }

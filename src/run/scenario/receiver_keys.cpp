@@ -95,12 +95,21 @@ void read_output_keys(TableReader& receiver, ReceiverEntry& entry, const std::fi
                             "tcp:[HOST:]PORT[@BAUD], tcp-connect:HOST:PORT[@BAUD], rfc2217:[HOST:]PORT, file:PATH, -, "
                             "client:NAME; NAME= before it says which port",
                             "a pty"});
+    receiver.text("corrections", entry.corrections,
+                  {"a caster whose corrections the receiver hears in a live run: "
+                   "ntrip://[USER:PASSWORD@]HOST[:PORT]/MOUNT or ntrips://…; NAME= before it says at which port "
+                   "(docs/ntrip.md)",
+                   "none"});
+    receiver.where(!entry.corrections.empty(), "with corrections", [&] {
+        receiver.integer("corrections_position_s", entry.corrections_position_s, {0, 3600},
+                         "every how many seconds the caster is told the receiver's position (GGA); 0: never");
+    });
     receiver.text("power", entry.power,
                   {"the actuator that the fault power_cut switches in a live run: relay:VID:PID/N gpio:VID:PID/N "
                    "hub:PORT_PATH line:DEVICE/rts line:DEVICE/dtr command:CUT|RESTORE (docs/actuators.md)",
                    "none"});
-    for (const char* key :
-         {"board", "port", "power", "config", "state_file", "rate_hz", "baud", "constellations", "dual_frequency"})
+    for (const char* key : {"board", "port", "corrections", "power", "config", "state_file", "rate_hz", "baud",
+                            "constellations", "dual_frequency"})
         entry.told_at[key] = receiver.told_at(key);
     receiver.number("rate_hz", entry.rate_hz, {0.01, 100}, {"navigation rate at the factory", "the board's"});
     receiver.integer("baud", entry.baud, {300, 4e6}, {"bit/s of UART1 at the factory", "the board's"});

@@ -196,12 +196,14 @@ struct KeyJudge {
 
 /// One emulated receiver and its wires.
 struct ReceiverEntry {
-    std::string name;                               ///< empty: receiver0, receiver1, …
-    std::string board = "ublox-m8";                 ///< for find_board(): a name, or the path of a file
-    std::vector<std::string> ports;                 ///< URIs, after the name of a port and "=" or alone; empty: one pty
-    std::string power;                              ///< URI of the actuator that power_cut switches; empty: none
-    std::optional<double> rate_hz;                  ///< nothing: the board's
-    std::optional<std::uint32_t> baud;              ///< nothing: the board's
+    std::string name;                   ///< empty: receiver0, receiver1, …
+    std::string board = "ublox-m8";     ///< for find_board(): a name, or the path of a file
+    std::vector<std::string> ports;     ///< URIs, after the name of a port and "=" or alone; empty: one pty
+    std::string corrections;            ///< URI of a caster's mount point, after a port and "=" or alone; empty: none
+    int corrections_position_s = 10;    ///< the caster is told the position, every so many s; 0: never
+    std::string power;                  ///< URI of the actuator that power_cut switches; empty: none
+    std::optional<double> rate_hz;      ///< nothing: the board's
+    std::optional<std::uint32_t> baud;  ///< nothing: the board's
     std::vector<firmware::NmeaSentence> sentences;  ///< empty: the board's
     std::vector<Constellation> constellations;      ///< that it tracks; empty: the board's
     bool dual_frequency = false;                    ///< tracks the second signal of each system too
@@ -238,6 +240,22 @@ struct CommandEntry {
     std::string told_at{};  ///< as that of a fault
 };
 
+/// A mount point of the run's caster: RTCM of a port of a receiver.
+struct CasterMount {
+    std::string name;
+    std::size_t receiver = 0;  ///< by its place in the list
+    std::string port;          ///< the name of one of its board's; empty: the one that a wire without a name has
+    std::string told_at{};     ///< "FILE:LINE:COLUMN: KEY: ", for messages
+};
+
+/// [caster]
+struct CasterSettings {
+    std::string listen;                          ///< "[HOST:]PORT"; empty: there is no caster
+    std::map<std::string, std::string> users{};  ///< passwords by names; empty: everybody is served
+    std::vector<CasterMount> mounts{};           ///< empty: one for each receiver that can send RTCM
+    std::string told_at = "--caster: ";          ///< of `listen`, as CasterMount::told_at
+};
+
 struct Scenario {
     std::string name = "embedded defaults";
     std::string source;  ///< the text it was read from and the options laid over it, for a digest
@@ -252,6 +270,7 @@ struct Scenario {
     std::vector<std::string> atmosphere_keys;                              ///< those of [atmosphere] that were given
     std::vector<ReceiverEntry> receivers = std::vector<ReceiverEntry>(1);  ///< at least one
     std::vector<OutputSettings> outputs;                                   ///< what is told beside the receivers' wires
+    CasterSettings caster;                                                 ///< who else hears the receivers' RTCM
     std::vector<FaultEntry> faults;
     std::vector<CommandEntry> commands;
     std::vector<Expectation> expectations;       ///< what the run is judged by

@@ -208,6 +208,7 @@ void read_top_keys(TableReader& top, Scenario& scenario, const std::filesystem::
     read_receivers(top, scenario, context);
     if (is_all_live(scenario)) refuse_idle_frame(top);
     read_outputs(top, scenario);
+    read_caster(top, scenario);
     read_timeline(top, scenario);
     read_expectations(top, scenario);
     read_campaign(top, scenario.campaign);

@@ -77,6 +77,9 @@ void read_receivers(TableReader& top, Scenario& scenario, const TrajectoryContex
 /// Reads every [[output]] of a scenario's top table, after its receivers.
 void read_outputs(TableReader& top, Scenario& scenario);
 
+/// Reads [caster] of a scenario's top table, after its receivers.
+void read_caster(TableReader& top, Scenario& scenario);
+
 /// Reads [scene]. @param folder that paths are relative to
 void read_scene_keys(TableReader& table, SceneEntry& scene, const std::filesystem::path& folder);
 
