@@ -39,6 +39,8 @@ const Observation* find_signal(const std::vector<Observation>& signals, const Ob
     return at != signals.end() && at->satellite == same.satellite && at->signal == same.signal ? &*at : nullptr;
 }
 
+double phase_range(const Observation& o) { return *o.carrier_phase * speed_of_light / o.carrier.value(); }
+
 bool has_phase(const Observation& o) { return o.pseudorange && o.carrier_phase && o.half_cycle_resolved; }
 
 // By how much the variances of a weak signal, which echoes outdo sooner, are larger.
@@ -62,12 +64,6 @@ struct End {
     [[nodiscard]] double left_of(double range_m) const { return range_m - sight.distance_m + clock_m - dry_m; }
 };
 
-// The two ends' looks at one satellite, by one of its signals.
-struct BothEnds {
-    End own, reference;
-    Angle elevation;
-};
-
 // A place with the air above it.
 struct Site {
     Position<Ecef> place;
@@ -85,6 +81,12 @@ struct Site {
 };
 
 }  // namespace
+
+// The two ends' looks at one satellite, by one of its signals.
+struct BaselineSolver::BothEnds {
+    End own, reference;
+    Angle elevation;
+};
 
 int correct_codes(Observations& observations, const ReferenceStation& reference, TransmitterSource& transmitters) {
     if (!reference.position) return 0;
@@ -143,48 +145,51 @@ bool BaselineSolver::reference_broke(const Observation& o, GpsTime time) {
     return o.lock_time < before.lock || o.lock_time < Seconds(0.5 * difference(time, before.time).value());
 }
 
+SingleDifference BaselineSolver::difference_of(const Observation& own, const Observation& reference,
+                                               const BothEnds& ends, Seconds age) const {
+    const double slant = 1 / std::max(std::sin(ends.elevation.rad()), 0.05);
+    const double weak = weakness(own.cn0) + weakness(reference.cn0), old = parameters_.per_age.value() * age.value();
+    const auto variance = [&](Metres floor, Metres at_zenith) {
+        return weak * (square(floor.value()) + square(at_zenith.value() * slant)) + square(old);
+    };
+    SingleDifference d;
+    d.satellite = own.satellite;
+    d.signal = own.signal;
+    d.wavelength_m = speed_of_light / own.carrier.value();
+    d.code_m = ends.own.left_of(own.pseudorange->value()) - ends.reference.left_of(reference.pseudorange->value());
+    d.phase_m = ends.own.left_of(phase_range(own)) - ends.reference.left_of(phase_range(reference));
+    d.line = ends.own.sight.line;
+    d.elevation = ends.elevation;
+    d.code_variance = variance(parameters_.code_floor, parameters_.code_at_zenith);
+    d.phase_variance = variance(parameters_.phase_floor, parameters_.phase_at_zenith);
+    d.ionosphere_factor = square(carrier_frequency(Signal::l1).value() / own.carrier.value());
+    d.wet_mapping = slant;
+    return d;
+}
+
 std::vector<SingleDifference> BaselineSolver::differences(const BaselineInput& input, TransmitterSource& transmitters) {
-    const GpsTime received = input.observations.receive_time, other_received = input.reference.epoch.time;
+    const ReferenceEpoch& reference = input.reference.epoch;
     const Site here(input.place, air_, input.time), there(*input.reference.position, air_, input.time);
-    const double age_variance = square(parameters_.per_age.value() * difference(input.time, other_received).value());
+    const Seconds age = difference(input.time, reference.time);
     std::vector<SingleDifference> result;
     std::optional<SatelliteId> satellite;
     std::optional<BothEnds> ends;
     for (const Observation& o : input.observations.signals) {
-        const Observation* other = find_signal(input.reference.epoch.signals, o);
+        const Observation* other = find_signal(reference.signals, o);
         if (!input.usable.contains(o.satellite) || other == nullptr || !has_phase(o) || !has_phase(*other)) continue;
         if (satellite != o.satellite || !ends) {
             // One signal's transmitter does for all: group delays are the same at both ends.
             satellite = o.satellite;
             ends.reset();
-            const auto own = transmitters.at(o.satellite, o.signal, received, *o.pseudorange);
-            const auto others = transmitters.at(o.satellite, o.signal, other_received, *other->pseudorange);
+            const auto own = transmitters.at(o.satellite, o.signal, input.observations.receive_time, *o.pseudorange);
+            const auto others = transmitters.at(o.satellite, o.signal, reference.time, *other->pseudorange);
             if (!own || !others) continue;
             ends = BothEnds{here.look(*own), there.look(*others), {}};
             ends->elevation = here.elevation_of(ends->own.sight);
         }
-        const double wave = speed_of_light / o.carrier.value();
-        const double slant = 1 / std::max(std::sin(ends->elevation.rad()), 0.05);
         const GpsTime seen = std::exchange(own_[{o.satellite, o.signal}], input.time);
-        SingleDifference d;
-        d.satellite = o.satellite;
-        d.signal = o.signal;
-        d.wavelength_m = wave;
-        d.code_m = ends->own.left_of(o.pseudorange->value()) - ends->reference.left_of(other->pseudorange->value());
-        d.phase_m = ends->own.left_of(*o.carrier_phase * wave) - ends->reference.left_of(*other->carrier_phase * wave);
-        d.line = ends->own.sight.line;
-        d.elevation = ends->elevation;
-        const double weak = weakness(o.cn0) + weakness(other->cn0);
-        d.code_variance =
-            weak * (square(parameters_.code_floor.value()) + square(parameters_.code_at_zenith.value() * slant)) +
-            age_variance;
-        d.phase_variance =
-            weak * (square(parameters_.phase_floor.value()) + square(parameters_.phase_at_zenith.value() * slant)) +
-            age_variance;
-        d.ionosphere_factor = square(carrier_frequency(Signal::l1).value() / o.carrier.value());
-        d.wet_mapping = slant;
-        const bool gap = o.lock_time < difference(input.time, seen);
-        d.broken = reference_broke(*other, other_received) || o.slipped || gap;
+        SingleDifference d = difference_of(o, *other, *ends, age);
+        d.broken = reference_broke(*other, reference.time) || o.slipped || o.lock_time < difference(input.time, seen);
         d.whole = o.satellite.constellation != Constellation::glonass || input.reference.glonass_biases_known;
         result.push_back(d);
     }
