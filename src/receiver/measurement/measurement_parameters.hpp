@@ -38,8 +38,8 @@ struct StatisticalMultipath {
     Seconds static_time{120};  ///< correlation time at rest
     Seconds horizon_time{0};   ///< what comes to it at the horizon, times exp(−e/10°)
     Seconds moving_time{5};    ///< above 1 m/s
-    /// Of the carrier's error to the code's. L1 − L2 of a ZED-F9T's phases, less a parabola over 280 s, leaves 2.7 mm
-    /// at 45 dBHz, of a mosaic-X5's 1.0 mm; with this 2.6 and 1.1 mm (docs/fidelity.md).
+    /// Of the carrier's error to the code's. L1 − L2 of phases, less a parabola over 280 s, leaves 2.7 mm of a ZED-F9T
+    /// and 1.0 mm of a mosaic-X5 at 45 dBHz; with this 2.5 and 1.1 mm (docs/fidelity.md).
     double phase_ratio = 0.003;
 };
 

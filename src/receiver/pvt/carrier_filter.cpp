@@ -311,10 +311,9 @@ std::optional<FixedOffset> CarrierFilter::State::fix() {
         double share;
         Seconds tracked;
     };
-    constexpr Seconds a_while{10};
+    const Seconds settled = p_.settled_after, later = 3 * settled;
     std::size_t last = 0;
-    for (const Part part :
-         {Part{1, Seconds(0)}, {0.8, Seconds(0)}, {1, a_while}, {0.8, a_while}, {0.6, a_while}, {0.4, a_while}}) {
+    for (const Part part : {Part{1, settled}, {0.8, settled}, {1, later}, {0.8, later}, {0.6, later}, {0.4, later}}) {
         const std::vector<AmbiguityPair> chosen = pairs(variance_of_best(part.share), part.tracked);
         if (chosen.size() < least_pairs || chosen.size() == last) continue;
         last = chosen.size();

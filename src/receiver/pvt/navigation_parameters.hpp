@@ -116,6 +116,7 @@ struct CarrierParameters {
     Metres wet_most{0.05};
     Seconds wet_memory{7200};
     Angle integers_from = Angle::degrees(12);  ///< elevation of satellites whose ambiguities are fixed
+    Seconds settled_after{5};                  ///< of tracking at both ends, an ambiguity may be fixed
     double least_ratio = 3;                    ///< of the ratio test
     double least_success = 0.99;               ///< of IntegerCandidates::success
     double least_success_of_part = 0.999;      ///< where ambiguities are left out

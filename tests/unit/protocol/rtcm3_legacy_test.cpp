@@ -102,9 +102,9 @@ Rtcm3LegacySatellite legacy_satellite(double range) {
 TEST(Rtcm3Legacy, EveryMessageTellsWhatItHasFieldsFor) {
     constexpr double range = 22145739.3983;
     for (const int number : {1001, 1002, 1003, 1004, 1009, 1010, 1011, 1012}) {
-        const bool extended = number % 2 == 0, both = number == 1003 || number == 1004 || number >= 1011;
+        const bool whole = number % 2 == 0, both = number == 1003 || number == 1004 || number >= 1011;
         EXPECT_TRUE(is_legacy_observables(number));
-        EXPECT_EQ(is_extended_legacy(number), extended) << number;
+        EXPECT_EQ(is_extended_legacy(number), whole) << number;
         Rtcm3LegacyObservables m{number, 4095, 86'399'123, true, {legacy_satellite(range)}, true, 5};
         const Bytes frame = encode(m);
         const Rtcm3LegacyObservables read = legacy_of(frame);
@@ -115,11 +115,11 @@ TEST(Rtcm3Legacy, EveryMessageTellsWhatItHasFieldsFor) {
         ASSERT_EQ(read.satellites.size(), 1u) << number;
         const Rtcm3LegacySatellite& s = read.satellites[0];
         const double modulus = legacy_range_modulus_m(number);
-        EXPECT_NEAR(*s.l1.range_m, extended ? range : std::fmod(range, modulus), 0.0101) << number;
-        EXPECT_NEAR(*s.l1.phase_range_m, (extended ? range : std::fmod(range, modulus)) + 3.25, 3e-4) << number;
+        EXPECT_NEAR(*s.l1.range_m, whole ? range : std::fmod(range, modulus), 0.0101) << number;
+        EXPECT_NEAR(*s.l1.phase_range_m, (whole ? range : std::fmod(range, modulus)) + 3.25, 3e-4) << number;
         EXPECT_EQ(s.l1.code, 1);
         EXPECT_EQ(s.l1.lock_s, 392) << "table 3.4-2: steps of 16 s";
-        EXPECT_EQ(s.l1.cno_dbhz, extended ? 44.25 : 0);
+        EXPECT_EQ(s.l1.cno_dbhz, whole ? 44.25 : 0);
         EXPECT_EQ(s.frequency_channel, number >= 1009 ? -7 : 0);
         ASSERT_EQ(s.l2.has_value(), both) << number;
         if (!both) continue;
