@@ -122,9 +122,9 @@ struct CarrierParameters {
     double least_success_of_part = 0.999;      ///< where ambiguities are left out
     Seconds hold_after{5};                     ///< since they were fixed without a break, ambiguities are held
     Seconds memory{30};                        ///< of an ambiguity whose signal is missed
-    int most_misfits = 3;           ///< epochs in which most phases contradict what is held, until all begins anew
-    double told_per_length = 1e-6;  ///< of the reported accuracies, beside the filter's
-    Metres told_floor{0.002};       ///< the same
+    int most_misfits = 3;             ///< epochs in which most phases contradict what is held, until all begins anew
+    double told_per_length = 1.4e-6;  ///< of the reported accuracies, beside the filter's
+    Metres told_floor{0.002};         ///< the same
 };
 
 /// What the receiver must hear of the satellites' data.
