@@ -80,13 +80,35 @@ struct Site {
     [[nodiscard]] Angle elevation_of(const Sight& sight) const { return frame.look_angles(sight.satellite).elevation; }
 };
 
-}  // namespace
-
 // The two ends' looks at one satellite, by one of its signals.
-struct BaselineSolver::BothEnds {
+struct BothEnds {
     End own, reference;
     Angle elevation;
 };
+
+SingleDifference difference_of(const Observation& own, const Observation& reference, const BothEnds& ends, Seconds age,
+                               const CarrierParameters& parameters) {
+    const double slant = 1 / std::max(std::sin(ends.elevation.rad()), 0.05);
+    const double weak = weakness(own.cn0) + weakness(reference.cn0), old = parameters.per_age.value() * age.value();
+    const auto variance = [&](Metres floor, Metres at_zenith) {
+        return weak * (square(floor.value()) + square(at_zenith.value() * slant)) + square(old);
+    };
+    SingleDifference d;
+    d.satellite = own.satellite;
+    d.signal = own.signal;
+    d.wavelength_m = speed_of_light / own.carrier.value();
+    d.code_m = ends.own.left_of(own.pseudorange->value()) - ends.reference.left_of(reference.pseudorange->value());
+    d.phase_m = ends.own.left_of(phase_range(own)) - ends.reference.left_of(phase_range(reference));
+    d.line = ends.own.sight.line;
+    d.elevation = ends.elevation;
+    d.code_variance = variance(parameters.code_floor, parameters.code_at_zenith);
+    d.phase_variance = variance(parameters.phase_floor, parameters.phase_at_zenith);
+    d.ionosphere_factor = square(carrier_frequency(Signal::l1).value() / own.carrier.value());
+    d.wet_mapping = slant;
+    return d;
+}
+
+}  // namespace
 
 int correct_codes(Observations& observations, const ReferenceStation& reference, TransmitterSource& transmitters) {
     if (!reference.position) return 0;
@@ -145,28 +167,6 @@ bool BaselineSolver::reference_broke(const Observation& o, GpsTime time) {
     return o.lock_time < before.lock || o.lock_time < Seconds(0.5 * difference(time, before.time).value());
 }
 
-SingleDifference BaselineSolver::difference_of(const Observation& own, const Observation& reference,
-                                               const BothEnds& ends, Seconds age) const {
-    const double slant = 1 / std::max(std::sin(ends.elevation.rad()), 0.05);
-    const double weak = weakness(own.cn0) + weakness(reference.cn0), old = parameters_.per_age.value() * age.value();
-    const auto variance = [&](Metres floor, Metres at_zenith) {
-        return weak * (square(floor.value()) + square(at_zenith.value() * slant)) + square(old);
-    };
-    SingleDifference d;
-    d.satellite = own.satellite;
-    d.signal = own.signal;
-    d.wavelength_m = speed_of_light / own.carrier.value();
-    d.code_m = ends.own.left_of(own.pseudorange->value()) - ends.reference.left_of(reference.pseudorange->value());
-    d.phase_m = ends.own.left_of(phase_range(own)) - ends.reference.left_of(phase_range(reference));
-    d.line = ends.own.sight.line;
-    d.elevation = ends.elevation;
-    d.code_variance = variance(parameters_.code_floor, parameters_.code_at_zenith);
-    d.phase_variance = variance(parameters_.phase_floor, parameters_.phase_at_zenith);
-    d.ionosphere_factor = square(carrier_frequency(Signal::l1).value() / own.carrier.value());
-    d.wet_mapping = slant;
-    return d;
-}
-
 std::vector<SingleDifference> BaselineSolver::differences(const BaselineInput& input, TransmitterSource& transmitters) {
     const ReferenceEpoch& reference = input.reference.epoch;
     const Site here(input.place, air_, input.time), there(*input.reference.position, air_, input.time);
@@ -188,7 +188,7 @@ std::vector<SingleDifference> BaselineSolver::differences(const BaselineInput& i
             ends->elevation = here.elevation_of(ends->own.sight);
         }
         const GpsTime seen = std::exchange(own_[{o.satellite, o.signal}], input.time);
-        SingleDifference d = difference_of(o, *other, *ends, age);
+        SingleDifference d = difference_of(o, *other, *ends, age, parameters_);
         d.broken = reference_broke(*other, reference.time) || o.slipped || o.lock_time < difference(input.time, seen);
         d.whole = o.satellite.constellation != Constellation::glonass || input.reference.glonass_biases_known;
         result.push_back(d);

@@ -71,10 +71,7 @@ private:
         GpsTime time;
         Seconds lock;
     };
-    struct BothEnds;
     std::vector<SingleDifference> differences(const BaselineInput& input, TransmitterSource& transmitters);
-    [[nodiscard]] SingleDifference difference_of(const Observation& own, const Observation& reference,
-                                                 const BothEnds& ends, Seconds age) const;
     bool reference_broke(const Observation& o, GpsTime time);
 
     CarrierParameters parameters_;
