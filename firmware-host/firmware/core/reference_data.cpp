@@ -66,12 +66,14 @@ std::optional<GpsTime> told_time(Constellation constellation, std::uint32_t epoc
 }
 
 void ReferenceData::take_position(const Position<Ecef>& antenna) {
+    stands_ = true;
     station_.position = antenna;
     station_.moves = false;
     if (!station_.epoch.signals.empty()) hand_on();
 }
 
 void ReferenceData::take_moving(const Position<Ecef>& antenna) {
+    if (stands_) return;
     station_.position = antenna;
     station_.moves = true;
 }

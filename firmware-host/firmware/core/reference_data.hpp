@@ -27,7 +27,8 @@ public:
     explicit ReferenceData(int id) { station_.id = id; }
 
     void take_position(const Position<Ecef>& antenna);
-    /// Of a base that moves (4072.0): where it was when it measured what follows.
+    /// Of a base that moves (4072.0): where it was when it measured what follows. One that says where it stands does
+    /// not.
     void take_moving(const Position<Ecef>& antenna);
     void take_glonass_biases() { station_.glonass_biases_known = true; }
     /// @param now by the receiver's clock
@@ -41,6 +42,7 @@ private:
     void take(std::optional<GpsTime> time, std::vector<Observation> signals, bool more);
     void hand_on();
 
+    bool stands_ = false;
     ReferenceStation station_;
     ReferenceEpoch coming_;
     std::shared_ptr<const ReferenceStation> handed_on_;

@@ -182,9 +182,14 @@ struct PluggedMount {
     std::shared_ptr<PortCorrections> source;
 };
 
+Result<firmware::PortId> port_of(const CasterMount& mount, const firmware::BoardProfile& board) {
+    if (mount.port.empty()) return default_port(board);
+    return port_of_board(mount.port, board);
+}
+
 Result<PluggedMount> plug_of(const CasterMount& mount, const Station& station, const Geodetic& place) {
     const firmware::BoardProfile& board = station.receiver().board();
-    const auto port = port_of_board(mount.port, board);
+    const auto port = port_of(mount, board);
     if (!port) return fail(ErrorCode::usage, mount.told_at + port.error().message);
     SourceRecord about;
     about.mount = mount.name;
@@ -208,8 +213,7 @@ Result<void> RunCaster::check(const Scenario& scenario, const Emulator& emulator
     const auto mounts = mounts_of(scenario, emulator.stations());
     if (!mounts) return fail(mounts.error());
     for (const CasterMount& mount : *mounts)
-        if (const auto port = port_of_board(mount.port, emulator.stations().at(mount.receiver).receiver().board());
-            !port)
+        if (const auto port = port_of(mount, emulator.stations().at(mount.receiver).receiver().board()); !port)
             return fail(ErrorCode::usage, mount.told_at + port.error().message);
     return {};
 }

@@ -123,7 +123,6 @@ UsbFace usb_face(const BoardProfile& board, PortId port) {
 }
 
 Result<PortId> port_of_board(std::string_view name, const BoardProfile& board) {
-    if (name.empty()) return default_port(board);
     const auto names = names_of(board.ports);
     const auto found = std::find(names.begin(), names.end(), name);
     if (found == names.end())

@@ -40,8 +40,7 @@ Result<std::vector<WireRequest>> wires_of(const ReceiverEntry& entry, const firm
 /// receiver has none. Fails with `usage`; no sentence has user or password.
 Result<std::optional<WireRequest>> corrections_of(const ReceiverEntry& entry, const firmware::BoardProfile& board);
 
-/// The port of a board by its name; of an empty one the default_port(). Fails with `usage` and a sentence that lists
-/// the board's ports.
+/// The port of a board by its name. Fails with `usage` and a sentence that lists the board's ports.
 Result<firmware::PortId> port_of_board(std::string_view name, const firmware::BoardProfile& board);
 
 /// The speed behind the address of a network wire, bit/s: UART1 begins at it, as if a client had set it before it was

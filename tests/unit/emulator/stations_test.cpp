@@ -218,17 +218,20 @@ double heading_error(const Trace& base, const Trace& rover) {
     return std::remainder(solved - std::atan2(truth.x(), truth.y()), 2 * M_PI) * 180 / M_PI;
 }
 
+// Of two F9P that see GPS alone; the half cycle of a phase takes six seconds to be known.
+const std::string pair_of_two_bands = two_receivers + "board = \"ublox-f9p\"\n";
+
 TEST(Stations, ARoverKnowsTheHeadingOfItsVehicle) {
-    std::string text = two_receivers;
+    std::string text = pair_of_two_bands;
     text.replace(text.find("duration_s = 30"), 15, "duration_s = 300");
     // The rover comes first: the order of the receivers makes no difference.
-    text.insert(text.find("antenna_offset_m = [0.5"), "base = \"rear\"\n");
+    text.insert(text.find("antenna_offset_m = [0.5"), "board = \"ublox-f9p\"\nbase = \"rear\"\n");
     Assembly assembly = stations_assembly(text);
     auto traces = traces_of(assembly);
     ASSERT_EQ(traces[0].size(), 300U);
     double squares = 0;
     int fixed = 0;
-    for (std::size_t i = 0; i < traces[0].size(); ++i) {
+    for (std::size_t i = 8; i < traces[0].size(); ++i) {
         const Trace &rover = traces[0][i], &base = traces[1][i];
         EXPECT_FALSE(base.epoch.relative);
         ASSERT_TRUE(rover.epoch.relative) << i;
@@ -238,21 +241,27 @@ TEST(Stations, ARoverKnowsTheHeadingOfItsVehicle) {
         ++fixed;
         squares += std::pow(heading_error(base, rover), 2);
         EXPECT_NEAR(std::hypot(rover.epoch.relative->north_m, rover.epoch.relative->east_m), 1, 0.03);
+        EXPECT_GT(rover.epoch.relative->down_deviation, rover.epoch.relative->deviation);
     }
-    EXPECT_EQ(fixed, 295) << "float for five seconds";
+    EXPECT_GT(fixed, 200);
     EXPECT_LT(std::sqrt(squares / fixed), 0.5);
     EXPECT_GT(std::sqrt(squares / fixed), 0.05) << "it is not the truth itself";
 }
 
 TEST(Stations, ThereIsNoVectorWithoutAnEpochOfTheBase) {
-    Assembly assembly = stations_assembly(two_receivers + "base = \"front\"\nrate_hz = 2\n");
+    std::string text = pair_of_two_bands + "base = \"front\"\nrate_hz = 2\n";
+    text.insert(text.find("antenna_offset_m = [0.5"), "board = \"ublox-f9p\"\n");
+    Assembly assembly = stations_assembly(text);
     auto traces = traces_of(assembly);
     ASSERT_EQ(traces[1].size(), 60U);
-    for (std::size_t i = 0; i < traces[1].size(); ++i) {
+    for (std::size_t i = 16; i < traces[1].size(); ++i) {
         const Trace& trace = traces[1][i];
-        EXPECT_EQ(trace.epoch.relative.has_value(), trace.truth.time.time_since_epoch() % 1s == 0ns);
-        EXPECT_EQ(trace.epoch.fix.type, i < 10 ? FixType::rtk_float : FixType::rtk_fixed)
-            << i << ": the last one stays";
+        const bool base_too = trace.truth.time.time_since_epoch() % 1s == 0ns;
+        EXPECT_EQ(trace.epoch.relative.has_value(), base_too);
+        EXPECT_GE(trace.epoch.fix.type, FixType::rtk_float) << i;
+        if (!base_too) {
+            EXPECT_EQ(trace.epoch.fix.type, traces[1][i - 1].epoch.fix.type) << i << ": the last one stays";
+        }
     }
 }
 

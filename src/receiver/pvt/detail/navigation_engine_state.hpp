@@ -1,6 +1,7 @@
 /// What a NavigationEngine knows and does, for the two files that it is written in.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "base/geo/local_frame.hpp"
@@ -60,8 +61,9 @@ private:
     const Observations& corrected(const Observations& observations, const Corrections& corrections);
     void solve_baseline(const EpochSolution& epoch, const Observations& observations, const Corrections& corrections);
     void solve_vector(const Observations& observations, const Corrections& corrections, Fix& fix);
+    // To the millisecond, below which both clocks are off.
     [[nodiscard]] Seconds reference_age(const ReferenceStation& reference) const {
-        return difference(time_, reference.epoch.time);
+        return Seconds(std::round(1e3 * difference(time_, reference.epoch.time).value()) / 1e3);
     }
     [[nodiscard]] DifferentialKind differential_kind() const;
     [[nodiscard]] Metres reported_undulation(const Geodetic& at) const {
