@@ -7,7 +7,7 @@ import unittest
 from session import open_folder, skyloop
 
 BASE, HEIGHT = (46.4775, 30.7326), 77.0
-EAST_M = 5000.0  # of the rover, from the base
+EAST_M = 1000.0  # of the rover, from the base
 
 MESSAGES = "\n".join(f"CFG-MSGOUT-RTCM_3X_TYPE{number}_UART1 = 1" for number in ("1005", "1077", "1230"))
 
@@ -20,8 +20,8 @@ def metres_per_degree():
     return math.radians(meridian), math.radians(normal) * math.sqrt(1 - sine * sine)
 
 
-def scenario(*, told_north_m=0.0, seconds=60, faults=""):
-    """A base that says it stands so far north of its place, and a rover 5 km east of that; GPS alone."""
+def scenario(*, told_north_m=0.0, seconds=150, faults=""):
+    """A base that says it stands so far north of its place, and a rover a kilometre east of that; GPS alone."""
     north, east = metres_per_degree()
     latitude, longitude = BASE[0] + told_north_m / north, BASE[1] + EAST_M / east
     return f"""[run]
