@@ -1,5 +1,5 @@
-// Corrections for others, of a receiver that can be a base: RTCM 1005, observations, 1230 and 4072 (RECEIVER.md 2.5,
-// 4.2).
+// Corrections for others, of a receiver that can be a base: RTCM 1005, observations, 1230 and 4072
+// (ZED-F9P interface description HPG 1.32, section 4.2).
 #include <algorithm>
 #include <chrono>
 #include <cmath>

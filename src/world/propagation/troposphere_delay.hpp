@@ -15,7 +15,7 @@
 
 namespace skyloop::inline world {
 
-/// 1 σ of the zenith wet delay: more in rain, and most in a thunderstorm (MODELS.md 7.3).
+/// 1 σ of the zenith wet delay: more in rain, and most in a thunderstorm (docs/models.md).
 Metres wet_delay_deviation(const TroposphereParameters& parameters, const AtmosphereParameters& atmosphere);
 
 /// How the wet delay at the zenith departs from its model, over its σ: a field over the globe that the wind carries,
