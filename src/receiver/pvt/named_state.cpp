@@ -14,17 +14,17 @@ void NamedState::arrange(std::vector<StateName> wanted, const std::function<doub
     const auto size = static_cast<Index>(wanted.size());
     Eigen::VectorXd new_values = Eigen::VectorXd::Zero(size);
     Eigen::MatrixXd new_covariance = Eigen::MatrixXd::Zero(size, size);
-    std::vector<std::pair<Index, Index>> kept;  // where it is, where it was
+    std::vector<std::pair<Index, Index>> moved;  // where it is, where it was
     for (Index i = 0; i < size; ++i) {
         const StateName& name = wanted[static_cast<std::size_t>(i)];
         if (std::ranges::binary_search(names_, name))
-            kept.emplace_back(i, index(name));
+            moved.emplace_back(i, index(name));
         else
             new_covariance(i, i) = variance(name);
     }
-    for (const auto& [to, from] : kept) {
+    for (const auto& [to, from] : moved) {
         new_values(to) = values(from);
-        for (const auto& [other_to, other_from] : kept)
+        for (const auto& [other_to, other_from] : moved)
             new_covariance(to, other_to) = covariance(from, other_from);
     }
     names_ = std::move(wanted);
