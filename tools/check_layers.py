@@ -27,7 +27,7 @@ FENCES = [
     ("nlohmann/json", ("nlohmann/",), {JSON}),
     ("pugixml", ("pugixml",), {"city", "tracks", "src/run/verdict/reports.cpp"}),
     ("libarchive", ("archive.h", "archive_entry.h"), {"core"}),
-    ("PROJ", ("proj.h", "proj/"), {"src/world/city/earth_map.cpp"}),
+    ("PROJ", ("proj.h", "proj/"), {"src/world/city/earth_map.cpp", "src/run/fault/terrestrial_frame.cpp"}),
     ("libtiff and libgeotiff", ("tiffio.h", "xtiffio.h", "geotiff.h", "geovalues.h", "geo_normalize.h"), {"src/world/city/geotiff_file.cpp"}),
     ("libosmium", ("osmium/", "protozero/"), {"city"}),
     ("CLI11", ("CLI/", "CLI11"), {"host"}),

@@ -56,6 +56,32 @@ at = [{BASE[0]}, {longitude}, 90.0]
 """
 
 
+def fault(kind, receiver="rover", more="", for_s=60):
+    """One that begins after a minute."""
+    return f'[[fault]]\nkind = "{kind}"\nreceiver = "{receiver}"\nat_s = 60\nfor_s = {for_s}\n{more}\n'
+
+
+# A second base, of another number, 36 km north.
+FAR_BASE = f"""[[receiver]]
+name = "far"
+board = "ublox-f9p"
+baud = 460800
+[receiver.config]
+CFG-RTCM-DF003_OUT = 9
+CFG-TMODE-MODE = 2
+CFG-TMODE-POS_TYPE = 1
+CFG-TMODE-LAT = 468000000
+CFG-TMODE-LON = {round(BASE[1] * 1e7)}
+CFG-TMODE-HEIGHT = {round(HEIGHT * 100)}
+CFG-UART1OUTPROT-NMEA = false
+CFG-UART1OUTPROT-RTCM3X = true
+{MESSAGES}
+[receiver.trajectory]
+kind = "fixed"
+at = [46.8, {BASE[1]}, {HEIGHT}]
+"""
+
+
 class CorrectionsTest(unittest.TestCase):
     def setUp(self):
         folder = open_folder()
@@ -99,6 +125,48 @@ class CorrectionsTest(unittest.TestCase):
             self.assertAlmostEqual(max(i for i, one in enumerate(kinds) if one == kind) - 60, age, delta=2, msg=kind)
         accuracies = [float(row["h_acc_m"]) for row in rows[60:74]]
         self.assertEqual(accuracies, sorted(accuracies))
+
+    def test_a_base_that_jumps_takes_its_rover_along(self):
+        """Nobody tells it, and nothing in the data contradicts it: fixed, and 10 m off the other way."""
+        rows = self.rover(seconds=120, faults=fault("antenna_moved", "base", "east_m = 10.0", for_s=30))
+        for second, east_m in ((59, 0), (62, -10), (85, -10), (95, 0)):
+            self.assertEqual(rows[second]["fix_type"], "rtk_fixed", second)
+            self.assertAlmostEqual(float(rows[second]["east_error_m"]), east_m, delta=0.05, msg=second)
+            self.assertLess(float(rows[second]["h_acc_m"]), 0.05)
+
+    def test_a_place_in_a_national_frame_is_off_by_what_lies_between(self):
+        """ETRF2000 of Europe's plate against ITRF2014, 2026: 0.6 m north, 0.9 m east less."""
+        rows = self.rover(seconds=90, faults=fault("base_in_other_frame"))
+        self.assertEqual(rows[80]["fix_type"], "rtk_fixed")
+        self.assertAlmostEqual(float(rows[80]["east_error_m"]), -0.88, delta=0.05)
+        self.assertAlmostEqual(float(rows[80]["north_error_m"]), -0.57, delta=0.05)
+
+    def test_a_wrong_mount_point_of_another_station_counts_after_ten_seconds(self):
+        far = FAR_BASE + fault("wrong_mount_point", "rover", 'of_receiver = "far"', for_s=60)
+        rows = self.rover(seconds=150, faults=far)
+        kinds = [row["fix_type"] for row in rows]
+        self.assertEqual(set(kinds[50:70]), {"rtk_fixed"})
+        self.assertTrue(all(kind != "rtk_fixed" for kind in kinds[73:120]), kinds[73:120])
+        self.assertEqual(kinds[149], "rtk_fixed")
+        for row in rows[73:]:
+            self.assertLess(math.hypot(float(row["east_error_m"]), float(row["north_error_m"])),
+                            4 * float(row["h_acc_m"]) + 0.05, row["time_utc"])
+
+    def test_one_of_the_same_number_is_found_out(self):
+        far = FAR_BASE.replace("CFG-RTCM-DF003_OUT = 9\n", "")
+        rows = self.rover(seconds=90, faults=far + fault("wrong_mount_point", "rover", 'of_receiver = "far"'))
+        for row in rows[61:]:
+            self.assertLess(math.hypot(float(row["east_error_m"]), float(row["north_error_m"])),
+                            4 * float(row["h_acc_m"]) + 0.05, row["time_utc"])
+
+    def test_bit_errors_make_holes_and_no_wrong_places(self):
+        rows = self.rover(seconds=120, faults=fault("bit_flips", "rover",
+                                                    'direction = "to_receiver"\nprobability = 0.0005'))
+        for row in rows[30:]:
+            self.assertEqual(row["fix_type"], "rtk_fixed")
+            self.assertLess(math.hypot(float(row["east_error_m"]), float(row["north_error_m"])), 0.05)
+        self.assertGreater(max(float(row["h_acc_m"]) for row in rows[61:]),
+                           max(float(row["h_acc_m"]) for row in rows[30:60]))
 
 
 if __name__ == "__main__":

@@ -82,7 +82,7 @@ public:
 
 private:
     static constexpr UbxMessageId wanted[] = {{0x01, 0x07}, {0x01, 0x03}, {0x01, 0x20}, {0x01, 0x3C}, {0x01, 0x26},
-                                              {0x0A, 0x38}, {0x01, 0x35}, {0x02, 0x15}, {0x27, 0x09}};
+                                              {0x0A, 0x38}, {0x01, 0x35}, {0x02, 0x15}, {0x27, 0x09}, {0x02, 0x32}};
     static std::uint32_t key(std::string_view name) { return firmware::find_config_key(name)->id; }
 
     template <class Message>
@@ -125,8 +125,8 @@ private:
     std::vector<HeardMessage> heard_;
 };
 
-/// How the rover comes to its fixes.
-enum class FaultBench { sensor, measuring };
+/// How the rover comes to its fixes: by a sensor model, by what it measures, and by corrections of a base besides.
+enum class FaultBench { sensor, measuring, corrected };
 
 /// What a run left behind.
 struct BenchRun {
@@ -146,14 +146,43 @@ struct BenchRun {
 /// Times of all runs on the bench, s: the week of GPS ends at 35, the day of UTC at 53.
 inline constexpr double bench_begin_s = 20, bench_end_s = 60;
 
+/// The base of the bench "corrected" stands in the middle of the rover's circle.
+inline constexpr double bench_latitude = 46.5, bench_longitude = 30.75, bench_height_m = 50;
+
 /// A minute before the end of the week, on a slow circle.
 inline std::string bench_scenario(FaultBench bench, const std::string& faults) {
+    const std::string base =
+        bench == FaultBench::corrected
+            ? "[receiver.trajectory]\nkind = \"fixed\"\nat = [46.5, 30.75, 50]\n"
+              "[[receiver]]\nname = \"rover\"\nboard = \"ublox-f9p\"\ncorrections_from = \"base\"\n"
+            : "antenna_offset_m = [-0.5, 0, 0]\n"
+              "[[receiver]]\nname = \"rover\"\nboard = \"ublox-f9p\"\nbase = \"base\"\n"
+              "antenna_offset_m = [0.5, 0, 0]\n";
     return std::string("[run]\nstart = 2024-03-09T23:59:07Z\nseed = 5\n[model]\nname = \"") +
            (bench == FaultBench::sensor ? "baseline" : "modern") +
            "\"\n[trajectory]\nkind = \"circle\"\ncentre = [46.5, 30.75, 50]\nradius_m = 300\nspeed_mps = 3\n"
-           "[[receiver]]\nname = \"base\"\nboard = \"ublox-f9p\"\nantenna_offset_m = [-0.5, 0, 0]\n"
-           "[[receiver]]\nname = \"rover\"\nboard = \"ublox-f9p\"\nbase = \"base\"\nantenna_offset_m = [0.5, 0, 0]\n" +
-           faults;
+           "[[receiver]]\nname = \"base\"\nboard = \"ublox-f9p\"\n" +
+           base + faults;
+}
+
+/// What makes a reference station of an F9P: its place, 1005, 1077 and 1230 at UART1.
+inline Bytes reference_station_settings() {
+    CfgValset settings;
+    settings.layers = 1;
+    const auto set = [&](std::string_view name, std::uint64_t value) {
+        settings.pairs.push_back({firmware::find_config_key(name)->id, value});
+    };
+    constexpr std::uint64_t fixed = 2, by_angles = 1;
+    set("CFG-TMODE-MODE", fixed);
+    set("CFG-TMODE-POS_TYPE", by_angles);
+    set("CFG-TMODE-LAT", static_cast<std::uint64_t>(bench_latitude * 1e7));
+    set("CFG-TMODE-LON", static_cast<std::uint64_t>(bench_longitude * 1e7));
+    set("CFG-TMODE-HEIGHT", static_cast<std::uint64_t>(bench_height_m * 100));
+    set("CFG-UART1OUTPROT-NMEA", 0);
+    set("CFG-UART1OUTPROT-RTCM3X", 1);
+    for (const char* number : {"1005", "1077", "1230"})
+        set(std::string("CFG-MSGOUT-RTCM_3X_TYPE") + number + "_UART1", 1);
+    return encode_frame(settings);
 }
 
 /// Runs the bench for so long.
@@ -169,8 +198,12 @@ inline BenchRun bench_run(FaultBench bench, const std::string& faults, double le
         parts.name = scenario.receivers[i].name;
         parts.seed = i + 1;
         parts.base = scenario.receivers[i].base;
-        if (parts.base) {
-            parts.moving_base.emplace(parts.seed);
+        parts.corrections_from = scenario.receivers[i].corrections_from;
+        parts.overheard = bench == FaultBench::corrected;
+        if (parts.overheard && i == 0)
+            parts.receiver.input(firmware::PortId::uart1, reference_station_settings(), start);
+        if (parts.base) parts.moving_base.emplace(parts.seed);
+        if (parts.name == "rover") {
             const auto port = firmware::PortId::uart1;
             parts.wires.push_back({port, Link(std::move(client), port_speed(parts.receiver, port))});
         }

@@ -23,7 +23,8 @@ struct FaultRow {
 
 // Settling times of receivers that measure: they search what they have lost, read its record and let the filter forget.
 // Positions then lie apart by what other noise of the channels makes of them.
-inline constexpr FaultBench measuring = FaultBench::measuring, sensor = FaultBench::sensor;
+inline constexpr FaultBench measuring = FaultBench::measuring, sensor = FaultBench::sensor,
+                            corrected = FaultBench::corrected;
 inline constexpr FaultRow fault_rows[] = {
     {"outage", "", "NAV-PVT", 60, 3, measuring},
     {"cn0_drop", "attenuation_db = 25", "NAV-SAT", 60, 3, measuring},
@@ -45,6 +46,7 @@ inline constexpr FaultRow fault_rows[] = {
     {"pseudorange_step", "step_m = 500", "RXM-RAWX", 60, 3, measuring},
     {"pseudorange_ramp", "ramp_mps = 20", "RXM-RAWX", 60, 3, measuring},
     {"cycle_slips", "slips_per_minute = 600", "RXM-RAWX", 60, 3, measuring},
+    {"antenna_moved", "", "NAV-PVT", 60, 3, measuring},
     {"position_step", "", "NAV-PVT"},
     {"position_ramp", "", "NAV-PVT"},
     {"drift", "", "NAV-PVT"},
@@ -106,6 +108,15 @@ inline constexpr FaultRow fault_rows[] = {
     {"power_cut", "", "NAV-PVT", 60, 0, sensor},
     {"speed_mismatch", "", "NAV-PVT"},
     {"one_direction_dead", "", "NAV-PVT"},
+    {"base_misplaced", "", "NAV-PVT", 60, 0.1, corrected},
+    {"base_multipath", "", "NAV-PVT", 60, 0.1, corrected},
+    {"corrections_lost", "", "NAV-PVT", 60, 0.1, corrected},
+    {"corrections_late", "", "NAV-PVT", 60, 0.1, corrected},
+    {"corrections_frozen", "", "NAV-PVT", 60, 0.1, corrected},
+    {"corrections_rare", "", "NAV-PVT", 60, 0.1, corrected},
+    {"glonass_biases_missing", "", "RXM-RTCM", 60, 0.1, corrected},
+    {"base_in_other_frame", "", "NAV-PVT", 60, 0.1, corrected},
+    {"wrong_mount_point", "of_receiver = \"rover\"", "NAV-PVT", 60, 0.1, corrected},
 };
 
 /// For failures.
@@ -125,7 +136,8 @@ inline double length_of(const FaultRow& row) { return bench_end_s + row.settle_s
 inline const BenchRun& sound_run(FaultBench bench) {
     static const BenchRun of_sensor = bench_run(FaultBench::sensor, "", 145);
     static const BenchRun of_measuring = bench_run(FaultBench::measuring, "", 145);
-    return bench == FaultBench::sensor ? of_sensor : of_measuring;
+    static const BenchRun of_corrected = bench_run(FaultBench::corrected, "", 145);
+    return bench == FaultBench::sensor ? of_sensor : bench == FaultBench::measuring ? of_measuring : of_corrected;
 }
 
 }  // namespace skyloop::test

@@ -46,23 +46,33 @@ Observation observation_of(const Rtcm3LegacyCarrier& carrier, SatelliteId satell
     return o;
 }
 
+// Of an observation message.
+std::optional<Constellation> constellation_of(int number) {
+    if (!is_legacy_observables(number)) return msm_constellation(number);
+    constexpr int first_glonass = 1009;
+    return number >= first_glonass ? Constellation::glonass : Constellation::gps;
+}
+
 bool before(const Observation& a, const Observation& b) {
     return std::pair(a.satellite, a.signal) < std::pair(b.satellite, b.signal);
 }
 
 }  // namespace
 
-std::optional<GpsTime> told_time(Constellation constellation, std::uint32_t epoch, GpsTime near, int leap_seconds) {
+std::optional<GpsTime> told_time(int number, std::uint32_t epoch, GpsTime near, int leap_seconds) {
     constexpr Nanoseconds week = 168h, day = 24h;
-    if (constellation == Constellation::glonass) {
-        // DF034: of the Moscow day, which a leap second makes longer by one.
-        const Nanoseconds of_day = std::chrono::milliseconds(epoch);
+    const auto constellation = constellation_of(number);
+    if (!constellation) return std::nullopt;
+    if (*constellation == Constellation::glonass) {
+        // DF034: of the Moscow day, which a leap second makes longer by one. MSM have the day of the week above it.
+        constexpr std::uint32_t day_part = (1u << 27) - 1;
+        const Nanoseconds of_day = std::chrono::milliseconds(epoch & day_part);
         if (of_day > day + 1s) return std::nullopt;
         return closest(near, of_day - 3h + std::chrono::seconds(leap_seconds), day);
     }
     const Nanoseconds of_week = std::chrono::milliseconds(epoch);
     if (of_week >= week) return std::nullopt;
-    return closest(near, of_week + (constellation == Constellation::beidou ? Nanoseconds(bdt_lag) : 0ns), week);
+    return closest(near, of_week + (*constellation == Constellation::beidou ? Nanoseconds(bdt_lag) : 0ns), week);
 }
 
 void ReferenceData::take_position(const Position<Ecef>& antenna) {
@@ -81,21 +91,18 @@ void ReferenceData::take_moving(const Position<Ecef>& antenna) {
 void ReferenceData::take_observations(const Rtcm3MsmObservations& message, GpsTime now, int leap_seconds) {
     const auto constellation = msm_constellation(message.number);
     if (!constellation) return;
-    constexpr std::uint32_t day_part = (1u << 27) - 1;  // of GLONASS, below the day of the week
-    const bool glonass = *constellation == Constellation::glonass;
     std::vector<Observation> signals;
     for (const Rtcm3MsmCell& cell : message.cells)
         if (const auto signal = msm_carrier(*constellation, cell.signal))
             signals.push_back(observation_of(cell, *constellation, *signal));
-    take(told_time(*constellation, glonass ? message.epoch & day_part : message.epoch, now, leap_seconds),
-         std::move(signals), message.more);
+    take(told_time(message.number, message.epoch, now, leap_seconds), std::move(signals), message.more);
 }
 
 void ReferenceData::take_observations(const Rtcm3LegacyObservables& message, GpsTime now, int leap_seconds) {
     if (!is_extended_legacy(message.number)) return;
-    constexpr int first_glonass = 1009, first_sbas = 40, sbas_offset = 20;
-    const bool glonass = message.number >= first_glonass;
-    const Constellation system = glonass ? Constellation::glonass : Constellation::gps;
+    constexpr int first_sbas = 40, sbas_offset = 20;
+    const Constellation system = *constellation_of(message.number);
+    const bool glonass = system == Constellation::glonass;
     std::vector<Observation> signals;
     for (const Rtcm3LegacySatellite& s : message.satellites) {
         const bool sbas = !glonass && s.satellite >= first_sbas;
@@ -105,7 +112,7 @@ void ReferenceData::take_observations(const Rtcm3LegacyObservables& message, Gps
         signals.push_back(observation_of(s.l1, id, glonass ? Signal::g1 : Signal::l1, s.frequency_channel));
         if (s.l2) signals.push_back(observation_of(*s.l2, id, glonass ? Signal::g2 : Signal::l2, s.frequency_channel));
     }
-    take(told_time(system, message.epoch, now, leap_seconds), std::move(signals), message.more);
+    take(told_time(message.number, message.epoch, now, leap_seconds), std::move(signals), message.more);
 }
 
 void ReferenceData::take(std::optional<GpsTime> time, std::vector<Observation> signals, bool more) {

@@ -14,9 +14,9 @@
 namespace skyloop::firmware {
 
 /// The instant of an observation message, which tells it within a week, or of GLONASS within a day, nearest to another.
-/// @param epoch ms of the system's week; of GLONASS of the Moscow day  @param leap_seconds GPST − UTC
-/// @return nothing for what no week or day has
-std::optional<GpsTime> told_time(Constellation constellation, std::uint32_t epoch, GpsTime near, int leap_seconds);
+/// @param number of the message: 1001 … 1012, 1071 … 1137  @param epoch as it has it  @param leap_seconds GPST − UTC
+/// @return nothing for other messages, and what no week or day has
+std::optional<GpsTime> told_time(int number, std::uint32_t epoch, GpsTime near, int leap_seconds);
 
 /// Collects the messages of one station. An epoch is handed on with its last message (DF393 says that no more follow),
 /// or with the first one of the next epoch.

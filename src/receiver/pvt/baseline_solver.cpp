@@ -197,6 +197,8 @@ std::vector<SingleDifference> BaselineSolver::differences(const BaselineInput& i
 }
 
 std::optional<BaselineSolution> BaselineSolver::solve(const BaselineInput& input, TransmitterSource& transmitters) {
+    if (station_ && *station_ != input.reference.id) reset();
+    station_ = input.reference.id;
     const std::vector<SingleDifference> all = differences(input, transmitters);
     const Displacement<Ecef> apart = input.place - *input.reference.position;
     const Metres height =
@@ -226,6 +228,7 @@ void BaselineSolver::reset() {
     filter_.reset();
     counted_.clear();
     own_.clear();
+    station_.reset();
 }
 
 }  // namespace skyloop::inline receiver

@@ -54,7 +54,8 @@ RelativePosition relative_position(const BaselineSolution& solution, const Refer
 /// Differences what both measured, and solves them by carrier phases. Data of the reference that are older than the
 /// epoch count as they are: what its clock and satellites have done since is known, and what the air has is noise.
 ///
-/// State: the filter, and until when each phase of the reference has been counted without a break.
+/// State: the filter, which begins anew with another reference, and until when each phase of that has been counted
+/// without a break.
 class BaselineSolver {
 public:
     /// @param air standard atmosphere; outlives this
@@ -77,6 +78,7 @@ private:
     CarrierParameters parameters_;
     const RangeCorrections& air_;
     CarrierFilter filter_;
+    std::optional<int> station_;      // the reference's number
     std::map<Key, Counted> counted_;  // of the reference
     std::map<Key, GpsTime> own_;      // when this receiver's phase was last seen
 };

@@ -22,8 +22,15 @@ constexpr double place_deviation_m = 30, ambiguity_deviation_m = 100;  // before
 constexpr std::size_t least_satellites = 4, least_pairs = 4;
 // A phase that fits neither by its deviation nor by a part of a cycle has lost its count.
 constexpr double misfit_deviations = 5, misfit_m = 0.05;
+constexpr double most_misfit_of_codes = 25;  // of their variances
 
 StateName ambiguity_of(const SingleDifference& d) { return {Kind::ambiguity, d.satellite, d.signal}; }
+
+// What fits worse than its variance expects makes a solution that is worse by as much.
+void follow(double& excess, double misfit, Seconds passed) {
+    constexpr double averaged_over_s = 20, most = 25;
+    excess += -std::expm1(-passed.value() / averaged_over_s) * (std::clamp(misfit, 1.0, most) - excess);
+}
 
 // Differences of one signal of one system, the highest satellite first, which is the one that others are compared to.
 using Group = std::vector<const SingleDifference*>;
@@ -65,7 +72,7 @@ private:
     [[nodiscard]] GroupEquations equations(const Group& group, bool phase, Seconds passed) const;
     void use_codes(const Group& group, Seconds passed);
     bool use_phases(Group group, GpsTime time);
-    void follow_misfits(Seconds passed);
+    [[nodiscard]] double misfit_of_codes() const;
     [[nodiscard]] std::vector<AmbiguityPair> pairs(double most_variance, Seconds tracked) const;
     [[nodiscard]] double variance_of_best(double share) const;
     std::optional<FixedOffset> fix(const std::vector<AmbiguityPair>& pairs, double least_success);
@@ -79,7 +86,7 @@ private:
     std::optional<GpsTime> time_, fixed_since_;
     int misfits_ = 0;                               // epochs in a row in which most phases did not fit
     double misfit_squares_ = 0, misfit_count_ = 0;  // of this epoch's phases, in their expected variances
-    double excess_ = 1;                             // of the variances, as the misfits of the last seconds show it
+    double excess_ = 1, code_excess_ = 1;           // of the variances, as misfits of the last seconds show it
 };
 
 double CarrierFilter::State::variance_of(const StateName& name, const Spacing& spacing) const {
@@ -200,6 +207,17 @@ bool CarrierFilter::State::use_phases(Group group, GpsTime time) {
     return fits;
 }
 
+// In their expected variances, after the phases have had their say.
+double CarrierFilter::State::misfit_of_codes() const {
+    double squares = 0, count = 0;
+    for (const auto& [name, group] : groups_) {
+        const GroupEquations e = equations(group, false, 2 * p_.code_memory);
+        squares += e.misfit.cwiseAbs2().cwiseQuotient(e.noise.diagonal()).sum();
+        count += static_cast<double>(e.misfit.size());
+    }
+    return count > 0 ? squares / count : 1;
+}
+
 std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const SingleDifference> differences,
                                                           const Spacing& spacing, GpsTime time) {
     const Seconds passed = time_ ? difference(time, *time_) : Seconds(0);
@@ -222,18 +240,17 @@ std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const Single
     std::size_t fitting = 0;  // groups
     for (const auto& [name, group] : groups_)
         if (use_phases(group, time)) ++fitting;
-    misfits_ = 2 * fitting >= groups_.size() ? 0 : misfits_ + 1;
-    if (contradicted()) return std::nullopt;
-    follow_misfits(passed);
-    return CarrierOffset{state_.values.head<3>(), excess_ * state_.covariance.topLeftCorner<3, 3>()};
-}
-
-// Phases that fit worse than their variances expect make a solution that is worse by as much.
-void CarrierFilter::State::follow_misfits(Seconds passed) {
-    constexpr double averaged_over_s = 20, most = 25;
-    const double seen = misfit_count_ > 0 ? std::clamp(misfit_squares_ / misfit_count_, 1.0, most) : 1;
-    excess_ += -std::expm1(-passed.value() / averaged_over_s) * (seen - excess_);
+    // Phases of another reference under the same number may happen to fit at first, and lead away.
+    const double codes = misfit_of_codes();
+    const bool credible = codes <= most_misfit_of_codes;
+    misfits_ = 2 * fitting >= groups_.size() && credible ? 0 : misfits_ + 1;
+    if (contradicted() || !credible) return std::nullopt;
+    const double phases = misfit_count_ > 0 ? misfit_squares_ / misfit_count_ : 1;
     misfit_squares_ = misfit_count_ = 0;
+    follow(excess_, phases, passed);
+    follow(code_excess_, codes, passed);
+    return CarrierOffset{state_.values.head<3>(),
+                         std::max(excess_, code_excess_) * state_.covariance.topLeftCorner<3, 3>()};
 }
 
 std::vector<AmbiguityPair> CarrierFilter::State::pairs(double most_variance, Seconds tracked) const {

@@ -65,7 +65,7 @@ public:
     ~CarrierFilter();
 
     /// One epoch; epochs come in ascending time. @return nothing for fewer than four satellites, and where the phases
-    /// contradict what was known: then all begins anew with the next epoch
+    /// contradict the codes, or have contradicted what was known for some epochs: then all begins anew with the next
     std::optional<CarrierOffset> update(std::span<const SingleDifference> differences, const Spacing& spacing,
                                         GpsTime time);
     /// With the whole ambiguities of the last epoch, of all its signals or of part of them, once these pass the tests;

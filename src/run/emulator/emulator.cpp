@@ -198,8 +198,18 @@ void Emulator::carry_out(const LoopTime& time) {
     for (Station& station : parts_.stations)
         said.push_back(station.take_overheard());
     for (Station& station : parts_.stations)
-        if (const auto from = station.corrections_from(); from && !said[*from].empty())
+        if (const auto from = heard_from(station); from && !said[*from].empty())
             station.hear_corrections(said[*from], time.now);
+}
+
+// A name that nobody has is a mount point without a receiver.
+std::optional<std::size_t> Emulator::heard_from(const Station& station) const {
+    const auto& wrong = station.wrong_corrections_from();
+    if (!wrong || !station.corrections_from()) return station.corrections_from();
+    const auto found = std::find_if(parts_.stations.begin(), parts_.stations.end(),
+                                    [&](const Station& other) { return other.name() == *wrong; });
+    if (found == parts_.stations.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - parts_.stations.begin());
 }
 
 void Emulator::take_in(const LoopTime& time) {

@@ -85,6 +85,7 @@ private:
     [[nodiscard]] GpsTime next_instant(GpsTime end) const;
     [[nodiscard]] bool all_connected();
     void carry_out(const LoopTime& time);
+    [[nodiscard]] std::optional<std::size_t> heard_from(const Station& station) const;
     void take_in(const LoopTime& time);
     void stand_by();
     void direct_stations();

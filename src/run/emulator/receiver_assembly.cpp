@@ -288,6 +288,16 @@ Result<NamedParts> named_parts(const SharedParts& shared, std::size_t index, std
     return parts;
 }
 
+// Somebody takes its corrections, or will by mistake.
+bool is_overheard(const Scenario& scenario, std::size_t index) {
+    const auto by = [&](const ReceiverEntry& other) { return other.corrections_from == index; };
+    const auto named = [&](const FaultEntry& fault) {
+        return fault.kind == "wrong_mount_point" &&
+               fault.parameters.text("of_receiver") == receiver_name(scenario, index);
+    };
+    return std::ranges::any_of(scenario.receivers, by) || std::ranges::any_of(scenario.faults, named);
+}
+
 Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std::vector<std::string>& warnings) {
     const Scenario& scenario = shared.scenario;
     const ReceiverEntry& entry = scenario.receivers.at(index);
@@ -316,8 +326,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     parts.state = std::move(state);
     parts.base = entry.base;
     parts.corrections_from = entry.corrections_from;
-    parts.overheard = std::ranges::any_of(scenario.receivers,
-                                          [&](const ReceiverEntry& other) { return other.corrections_from == index; });
+    parts.overheard = is_overheard(scenario, index);
     if (shared.mode.repeat) {
         auto heard = repeated_input(*shared.mode.repeat, index, wires, parts.receiver.board());
         if (!heard) return fail(heard.error());

@@ -139,12 +139,6 @@ Bytes PortCorrections::frames_since(std::uint64_t& next) const {
     return bytes;
 }
 
-bool sends_rtcm(const firmware::BoardProfile& board) {
-    return board.maker == firmware::MakerKind::sbf ||
-           std::any_of(board.messages.begin(), board.messages.end(),
-                       [](const UbxMessageId& id) { return id.message_class == firmware::class_rtcm; });
-}
-
 namespace {
 
 // A name of a receiver as a mount point may have it.
@@ -240,8 +234,8 @@ Result<RunCaster> RunCaster::start(const Scenario& scenario, Emulator& emulator,
     for (std::size_t i = 0; i < plugged.size(); ++i) {
         names.push_back((*mounts)[i].name);
         stations.at((*mounts)[i].receiver)
-            .add_tap([caster, mount = plugged[i]](const firmware::Receiver::Sent& sent, GpsTime now) {
-                if (sent.port == mount.port && mount.source->hear(sent.bytes, now)) caster->wake();
+            .add_tap(plugged[i].port, [caster, source = plugged[i].source](ByteSpan bytes, GpsTime now) {
+                if (source->hear(bytes, now)) caster->wake();
             });
     }
     const bool open_to_all = asked.users.empty() && !caster->loopback();

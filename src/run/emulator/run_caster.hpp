@@ -58,9 +58,6 @@ private:
     std::uint64_t bytes_ = 0;
 };
 
-/// Whether a receiver of this board can be told to send RTCM.
-bool sends_rtcm(const firmware::BoardProfile& board);
-
 class RunCaster {
 public:
     /// What start() would refuse before it asks the system.

@@ -1,6 +1,7 @@
 #include "run/emulator/station.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "run/emulator/antenna_path.hpp"
 #include "run/emulator/wires.hpp"
@@ -20,9 +21,20 @@ std::uint32_t first_baud(const firmware::Receiver& receiver) {
     return port_speed(receiver, default_port(receiver.board())).value_or(receiver.board().baud);
 }
 
-Station::Station(Parts parts) : parts_(std::move(parts)) {
+// Of the wires beside those of the ports: random numbers of their own.
+constexpr std::size_t corrections_wire = 1000, first_listener = 1001;
+
+Station::Station(Parts parts) : parts_(std::move(parts)), corrections_wire_(parts_.seed, corrections_wire) {
     for (std::size_t i = 0; i < std::max<std::size_t>(parts_.wires.size(), 1); ++i)
         faulty_wires_.emplace_back(parts_.seed, i);
+    if (!parts_.overheard) return;
+    overheard_ = std::make_shared<Bytes>();
+    add_tap(default_port(parts_.receiver.board()),
+            [kept = overheard_](ByteSpan bytes, GpsTime) { kept->insert(kept->end(), bytes.begin(), bytes.end()); });
+}
+
+void Station::add_tap(PortId port, Tap tap) {
+    listeners_.push_back({port, FaultyWire(parts_.seed, first_listener + listeners_.size()), std::move(tap)});
 }
 
 void Station::start(GpsTime now) {
@@ -56,6 +68,7 @@ void Station::take_in(const LoopTime& time, Dialogue* dialogue) {
     bool heard = hear_again(time.now, dialogue);
     for (std::size_t i = 0; i < faulty_wires_.size(); ++i)
         heard = hear(i, time.now, dialogue) || heard;
+    hear_corrections({}, time.now);
     if (heard) speak(time, dialogue);
     follow_faults(time.now);
     follow_settings(time.now);
@@ -68,8 +81,8 @@ void Station::input(PortId port, ByteSpan bytes, GpsTime now) {
         parts_.receiver.input(port, ByteSpan(&byte, 1), now);
 }
 
-void Station::hear_corrections(ByteSpan bytes, GpsTime now) {
-    input(default_port(parts_.receiver.board()), bytes, now);
+void Station::hear_corrections(Bytes bytes, GpsTime now) {
+    input(default_port(parts_.receiver.board()), corrections_wire_.to_receiver(std::move(bytes), now), now);
 }
 
 bool Station::hear_again(GpsTime now, Dialogue* dialogue) {
@@ -95,6 +108,10 @@ void Station::follow_faults(GpsTime now) {
     if (!parts_.repeated.empty()) conditions.to_receiver.garbage.clear();  // it was heard, and is heard again
     for (FaultyWire& wire : faulty_wires_)
         wire.set(conditions, now);
+    corrections_wire_.set(conditions, now);
+    for (Listener& listener : listeners_)
+        listener.wire.set(conditions, now);
+    wrong_corrections_from_ = conditions.corrections_from;
     for (Wire& wire : parts_.wires)
         wire.link.set_plugged(!conditions.unplugged);
     if (parts_.power) parts_.power->want(conditions.power_cut ? PowerState::cut : PowerState::on);
@@ -135,13 +152,7 @@ PortId Station::port_of(std::size_t wire) const {
 void Station::speak(const LoopTime& time, Dialogue* dialogue) {
     const std::vector<firmware::Receiver::Sent> pieces = parts_.receiver.output(time.now);
     const bool at_rest = !parts_.receiver.drained_at().has_value();
-    if (parts_.overheard)
-        for (const firmware::Receiver::Sent& piece : pieces)
-            if (piece.port == default_port(parts_.receiver.board()))
-                overheard_.insert(overheard_.end(), piece.bytes.begin(), piece.bytes.end());
-    for (const Tap& tap : taps_)
-        for (const firmware::Receiver::Sent& piece : pieces)
-            tap(piece, time.now);
+    show(pieces, time.now);
     for (std::size_t i = 0; i < faulty_wires_.size(); ++i) {
         if (i < parts_.wires.size() && parts_.wires[i].one_way) continue;
         std::vector<firmware::Receiver::Sent> own;
@@ -155,6 +166,16 @@ void Station::speak(const LoopTime& time, Dialogue* dialogue) {
         if (!parts_.recorder) continue;
         for (const firmware::Receiver::Sent& piece : own)
             parts_.recorder->record_output(piece.bytes, time, i);
+    }
+}
+
+void Station::show(const std::vector<firmware::Receiver::Sent>& pieces, GpsTime now) {
+    for (Listener& listener : listeners_) {
+        std::vector<firmware::Receiver::Sent> own;
+        std::copy_if(pieces.begin(), pieces.end(), std::back_inserter(own),
+                     [&](const firmware::Receiver::Sent& piece) { return piece.port == listener.port; });
+        for (const firmware::Receiver::Sent& piece : listener.wire.to_client(std::move(own), now))
+            listener.tap(piece.bytes, now);
     }
 }
 
@@ -189,8 +210,13 @@ std::optional<GpsTime> Station::next_change(GpsTime now) const {
     if (const auto at = parts_.receiver.next_change(); at && (!next || *at < *next)) next = at;
     if (heard_again_ < parts_.repeated.size() && (!next || parts_.repeated[heard_again_].at < *next))
         next = parts_.repeated[heard_again_].at;
-    for (const FaultyWire& wire : faulty_wires_)
+    const auto look_at = [&](const FaultyWire& wire) {
         if (const auto at = wire.next_at(now); at && (!next || *at < *next)) next = at;
+    };
+    std::for_each(faulty_wires_.begin(), faulty_wires_.end(), look_at);
+    look_at(corrections_wire_);
+    for (const Listener& listener : listeners_)
+        look_at(listener.wire);
     return next;
 }
 

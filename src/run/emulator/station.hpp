@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -71,9 +72,9 @@ public:
     };
     explicit Station(Parts parts);
 
-    /// Shows all that leaves the receiver's ports to one more, who may not wait, whatever is wrong with the wires.
-    using Tap = std::function<void(const firmware::Receiver::Sent& sent, GpsTime now)>;
-    void add_tap(Tap tap) { taps_.push_back(std::move(tap)); }
+    /// Shows what leaves a port to one more, who may not wait, by a wire of its own that faults hit like the others.
+    using Tap = std::function<void(ByteSpan bytes, GpsTime now)>;
+    void add_tap(firmware::PortId port, Tap tap);
 
     /// The receiver starts; before anything else.
     void start(GpsTime now);
@@ -85,10 +86,10 @@ public:
     /// faults and what a client has configured.
     /// @param dialogue is shown the messages of both
     void take_in(const LoopTime& time, Dialogue* dialogue = nullptr);
-    /// What has left since the last call by the port that others take corrections from.
-    [[nodiscard]] Bytes take_overheard() { return std::exchange(overheard_, {}); }
-    /// Corrections of another receiver arrive.
-    void hear_corrections(ByteSpan bytes, GpsTime now);
+    /// What has come since the last call from the port that others take corrections from.
+    [[nodiscard]] Bytes take_overheard() { return overheard_ ? std::exchange(*overheard_, {}) : Bytes(); }
+    /// Corrections of another receiver enter the wire by which they come.
+    void hear_corrections(Bytes bytes, GpsTime now);
     /// What is true, measured and solved at the epoch that is due.
     Trace observe();
     /// Adds the vector from the base antenna, and the type of fix that it makes.
@@ -128,6 +129,8 @@ public:
     [[nodiscard]] bool busy() const;
     [[nodiscard]] std::optional<std::size_t> base() const { return parts_.base; }
     [[nodiscard]] std::optional<std::size_t> corrections_from() const { return parts_.corrections_from; }
+    /// Name of the receiver that a fault has in the place of that one.
+    [[nodiscard]] const std::optional<std::string>& wrong_corrections_from() const { return wrong_corrections_from_; }
     [[nodiscard]] bool is_overheard() const { return parts_.overheard; }
     [[nodiscard]] const std::string& name() const { return parts_.name; }
     [[nodiscard]] const firmware::Receiver& receiver() const { return parts_.receiver; }
@@ -154,6 +157,7 @@ private:
     void input(firmware::PortId port, ByteSpan bytes, GpsTime now);
     bool hear_again(GpsTime now, Dialogue* dialogue);
     void speak(const LoopTime& time, Dialogue* dialogue);
+    void show(const std::vector<firmware::Receiver::Sent>& pieces, GpsTime now);
     void send_on_wire(std::size_t wire, const std::vector<firmware::Receiver::Sent>& pieces, bool at_rest);
     [[nodiscard]] firmware::PortId port_of(std::size_t wire) const;
     [[nodiscard]] PortSpeed line_speed(std::size_t wire) const;
@@ -161,14 +165,22 @@ private:
     void tell_position();
     void follow_settings(GpsTime now);
 
+    struct Listener {
+        firmware::PortId port;
+        FaultyWire wire;
+        Tap tap;
+    };
+
     Parts parts_;
-    std::vector<Tap> taps_;
+    std::vector<Listener> listeners_;
     ActiveFaults faults_;
     bool faults_act_ = false;               // on receiver or wires, at the last look
     std::vector<FaultyWire> faulty_wires_;  // one more than none: what has no wire is recorded as if it had
-    std::size_t heard_again_ = 0;           // of parts_.repeated
+    FaultyWire corrections_wire_;           // from another receiver of the run
+    std::optional<std::string> wrong_corrections_from_;
+    std::size_t heard_again_ = 0;  // of parts_.repeated
     EpochGrid grid_;
-    Bytes overheard_;
+    std::shared_ptr<Bytes> overheard_;  // null: nobody wants it
     RunCounts counts_;
 };
 

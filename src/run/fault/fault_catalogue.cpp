@@ -12,7 +12,7 @@ const std::vector<FaultKind>& fault_kinds() {
         std::vector<FaultKind> all;
         for (const auto& layer :
              {reception_fault_kinds(), spoofing_fault_kinds(), satellite_fault_kinds(), position_fault_kinds(),
-              time_fault_kinds(), receiver_fault_kinds(), wire_fault_kinds()})
+              time_fault_kinds(), receiver_fault_kinds(), wire_fault_kinds(), correction_fault_kinds()})
             all.insert(all.end(), layer.begin(), layer.end());
         return all;
     }();

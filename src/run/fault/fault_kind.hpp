@@ -56,9 +56,10 @@ enum class FaultLayer {
     signals,   ///< what reaches the antenna, or is measured of it
     solution,  ///< what the receiver believes or reports
     receiver,  ///< how it behaves
-    wire
+    wire,
+    corrections  ///< of a base station on their way to a rover
 };
-inline constexpr std::string_view fault_layer_names[] = {"signals", "solution", "receiver", "wire"};
+inline constexpr std::string_view fault_layer_names[] = {"signals", "solution", "receiver", "wire", "corrections"};
 
 /// An instant of a fault at work.
 struct FaultMoment {

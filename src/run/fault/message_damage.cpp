@@ -98,7 +98,8 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
     }
 }
 
-MessageDamage::MessageDamage(std::uint64_t seed, std::string_view stream) : splitter_(wire_protocols) {
+MessageDamage::MessageDamage(std::uint64_t seed, std::string_view stream)
+    : splitter_(wire_protocols), corrections_(seed, std::string(stream)) {
     for (const std::string_view of : {"checksum", "place", "truncation", "merging", "duplication", "reordering",
                                       "garbage", "garbage content", "jitter", "garbage source"})
         random_.emplace_back(seed, std::string(stream) + "." + std::string(of));
@@ -119,14 +120,17 @@ void MessageDamage::set(const WireDirection& direction, GpsTime now, std::vector
     integral_ += bursts_per_s(direction_) * difference(now, integrated_to_).value();
     integrated_to_ = now;
     direction_ = direction;
+    corrections_.set(direction.corrections);
     active_ = direction.checksum_errors > 0 || direction.truncation > 0 || direction.merging > 0 ||
               direction.duplication > 0 || direction.reordering > 0 || !direction.garbage.empty() ||
-              direction.jitter.value() > 0;
+              direction.jitter.value() > 0 || direction.corrections != CorrectionConditions{};
     if (direction.garbage.empty()) {
         integral_ = 0;
         bursts_due_.clear();
     }
     if (direction.merging <= 0) head_is_missing_ = false;
+    while (direction.corrections.delay.value() <= 0 && !delayed_.empty())
+        deliver_delayed(now, out);
     if (direction.reordering <= 0) emit_late(now, out);
     if (!active_) flush(now, out);
 }
@@ -143,6 +147,8 @@ void MessageDamage::clear() {
     std::vector<TimedBytes> lost;
     flush({}, lost);
     late_.clear();
+    delayed_.clear();
+    delayed_bytes_ = 0;
     head_is_missing_ = false;
     bursts_due_.clear();
 }
@@ -163,6 +169,8 @@ void MessageDamage::decide(StreamPiece piece, GpsTime now, std::vector<TimedByte
     forget_arrivals(piece.bytes.size());
     if (piece.kind == StreamKind::noise)
         emit(std::move(piece.bytes), now, out);
+    else if (piece.kind == StreamKind::rtcm3 && corrections_.active())
+        correct(std::move(piece), now, out);
     else
         damage(std::move(piece), now, out);
     for (const int bytes : std::exchange(bursts_due_, {}))
@@ -177,6 +185,27 @@ void MessageDamage::forget_arrivals(std::size_t count) {
         count -= part;
         if (arrivals_.front().count == 0) arrivals_.pop_front();
     }
+}
+
+void MessageDamage::correct(StreamPiece piece, GpsTime now, std::vector<TimedBytes>& out) {
+    const std::size_t size = piece.bytes.size();
+    Bytes told = corrections_.change(piece.bytes, now);
+    if (told.empty()) counts_.bytes_lost += size;
+    if (told != piece.bytes) ++counts_.messages_changed;
+    if (told.empty()) return;
+    piece.bytes = std::move(told);
+    const Seconds delay = direction_.corrections.delay;
+    if (delay.value() <= 0) return damage(std::move(piece), now, out);
+    const GpsTime due = advanced(now, delay);
+    delayed_bytes_ += piece.bytes.size();
+    delayed_.push_back({delayed_.empty() ? due : std::max(due, delayed_.back().due), std::move(piece)});
+}
+
+void MessageDamage::deliver_delayed(GpsTime now, std::vector<TimedBytes>& out) {
+    StreamPiece piece = std::move(delayed_.front().piece);
+    delayed_.pop_front();
+    delayed_bytes_ -= piece.bytes.size();
+    damage(std::move(piece), now, out);
 }
 
 void MessageDamage::cut(Bytes& message) {
@@ -280,10 +309,13 @@ void MessageDamage::advance(GpsTime now, std::vector<TimedBytes>& out) {
     for (;;) {
         const GpsTime patience = patience_ends().value_or(never), garbage = garbage_at().value_or(never);
         const GpsTime late = late_.empty() ? never : late_since_ + longest_lateness;
-        const GpsTime first = std::min({patience, garbage, late});
+        const GpsTime delayed = delayed_.empty() ? never : delayed_.front().due;
+        const GpsTime first = std::min({patience, garbage, late, delayed});
         if (first > now) return;
         if (first == patience)
             give_up_waiting(first, out);
+        else if (first == delayed)
+            deliver_delayed(first, out);
         else if (first == late)
             emit_late(first, out);
         else
@@ -295,6 +327,7 @@ std::optional<GpsTime> MessageDamage::next_at() const {
     std::optional<GpsTime> next = patience_ends();
     if (const auto garbage = garbage_at()) next = std::min(next.value_or(GpsTime::max()), *garbage);
     if (!late_.empty()) next = std::min(next.value_or(GpsTime::max()), late_since_ + longest_lateness);
+    if (!delayed_.empty()) next = std::min(next.value_or(GpsTime::max()), delayed_.front().due);
     return next;
 }
 

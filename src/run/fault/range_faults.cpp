@@ -6,6 +6,7 @@
 #include "detail/fault_catalogue.hpp"
 #include "detail/signal_selector.hpp"
 #include "run/fault/fault_kind.hpp"
+#include "world/gnss/constants.hpp"
 
 namespace skyloop::inline run {
 
@@ -126,6 +127,32 @@ Result<Fault> make_cycle_slips(const Parameters& parameters, const FaultContext&
     return fault_of<&Fault::observations>(CycleSlips(parameters, context, std::move(*selector)));
 }
 
+// Off the path that is true: what is measured changes by the way along each line of sight, the solution with it.
+Result<Fault> make_antenna_moved(const Parameters& parameters, const FaultContext&) {
+    const Eigen::Vector3d way(parameters.number("east_m"), parameters.number("north_m"), parameters.number("up_m"));
+    return fault_of<&Fault::observations>([way](Observations& observations, const FaultMoment& moment) {
+        if (moment.sky == nullptr) return;
+        std::map<SatelliteId, double> nearer_m;
+        for (const SatelliteInView& s : moment.sky->satellites) {
+            const double a = s.azimuth.rad(), e = s.elevation.rad();
+            const Eigen::Vector3d sight(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
+            nearer_m[s.id] = sight.dot(way);
+        }
+        for (Observation& o : observations.signals) {
+            const auto found = nearer_m.find(o.satellite);
+            if (found == nearer_m.end()) continue;
+            const double cycles = found->second * o.carrier.value() / speed_of_light;
+            if (o.pseudorange) lengthen(o, Metres(-found->second * moment.strength), moment.terms);
+            if (o.carrier_phase) *o.carrier_phase -= cycles * moment.strength;
+            if (o.doppler) *o.doppler += Hertz(cycles * moment.strength_rate);
+        }
+    });
+}
+
+constexpr ParameterSpec way_parameter(std::string_view name, double standard) {
+    return number_parameter(name, standard, -1e4, 1e4, "m by which it is off the path of the run");
+}
+
 constexpr auto range_kinds = std::to_array<FaultKind>({
     {"pseudorange_step", "Pseudoranges of some satellites are off by a constant; phase and Doppler shift are sound.",
      "A channel that has locked to a side peak or a cross-correlation, a bad correction.",
@@ -145,6 +172,14 @@ constexpr auto range_kinds = std::to_array<FaultKind>({
       flag_parameter("flagged", true, "the receiver notices its slips and says so"), constellations_parameter,
       satellites_parameter, signals_parameter},
      make_cycle_slips,
+     of_measurements},
+    {"antenna_moved",
+     "The antenna is off the path that counts as true. Of a base, whose told place stays, it is a jump that nobody "
+     "tells: a rover's solution goes as far the other way at once, fixed as before, since nothing in the data "
+     "contradicts it.",
+     "A tripod that is knocked over or set up again beside its mark, a mast that bends.",
+     {way_parameter("east_m", 10), way_parameter("north_m", 0), way_parameter("up_m", 0)},
+     make_antenna_moved,
      of_measurements},
 });
 

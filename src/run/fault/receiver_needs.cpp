@@ -79,6 +79,12 @@ bool solves_rtk(const UsedReceiver& receiver) {
     return can<&Abilities::corrections>(receiver) && receiver.board.corrections.rtk;
 }
 
+bool sends_rtcm(const firmware::BoardProfile& board) {
+    return board.maker == firmware::MakerKind::sbf ||
+           std::any_of(board.messages.begin(), board.messages.end(),
+                       [](const UbxMessageId& id) { return id.message_class == firmware::class_rtcm; });
+}
+
 bool reports_dead_reckoning(const UsedReceiver& receiver) {
     return receiver.board.timing.coasting.value() > 0 && can<&Abilities::dead_reckoning>(receiver);
 }

@@ -75,6 +75,9 @@ bool can_track(const firmware::BoardProfile& board, Constellation constellation)
 /// Whether it receives second signals, where a document says so.
 bool has_second_band(const firmware::BoardProfile& board);
 
+/// Whether a receiver of this board can be told to send RTCM.
+bool sends_rtcm(const firmware::BoardProfile& board);
+
 /// Why a receiver never sends a message that is called so, as dialogues and expectations name it: a phrase behind its
 /// board's name; empty: it sends it, or may. @param wanted as is_message_named() takes it
 std::string why_never_sent(const UsedReceiver& receiver, std::string_view wanted);

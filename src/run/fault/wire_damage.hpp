@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "base/core/random.hpp"
 #include "base/core/units.hpp"
 #include "base/time/gps_time.hpp"
+#include "run/fault/correction_conditions.hpp"
 
 namespace skyloop::inline run {
 
@@ -39,6 +41,7 @@ struct WireDirection {
     Seconds jitter{0};                     ///< 1 σ that is added to the delay of each message; never overtaking
     bool stalled = false;                  ///< all is kept, and comes at once when this ends
     std::optional<double> bytes_per_s{};   ///< no more come through; the rest waits, and the lag grows
+    CorrectionConditions corrections{};    ///< that come this way
 
     [[nodiscard]] bool operator==(const WireDirection&) const = default;
 };
@@ -50,6 +53,8 @@ struct WireConditions {
     bool line_break = false;  ///< the line is held at space: the client hears zero bytes with framing errors
     bool power_cut = false;   ///< the receiver has no power: what is behind its actuator is to have none either
     std::optional<std::uint32_t> receiver_baud;  ///< the line runs at this speed, whatever the receiver believes
+    /// Name of a receiver of the run whose corrections come in place of those that should.
+    std::optional<std::string> corrections_from;
 
     [[nodiscard]] bool operator==(const WireConditions&) const = default;
 };
@@ -61,7 +66,7 @@ struct WireDamageCounts {
     std::uint64_t bytes_overrun = 0;     ///< lost because too many waited
     std::uint64_t bytes_inserted = 0;    ///< garbage, and second copies of messages
     std::uint64_t bits_turned = 0;       ///< by bit errors and checksum errors
-    std::uint64_t messages_changed = 0;  ///< cut, with a wrong checksum, doubled or late
+    std::uint64_t messages_changed = 0;  ///< cut, with a wrong checksum, doubled or late; corrections that tell else
     std::uint64_t garbage_bursts = 0;
 
     [[nodiscard]] bool operator==(const WireDamageCounts&) const = default;
@@ -71,7 +76,8 @@ struct WireDamageCounts {
 ///
 /// A sound direction hands on what it is given, at once and unchanged. What is drawn depends on the bytes and their
 /// times, not on how they were cut into pieces, nor on when what came out was taken. In this order bytes meet: a dead
-/// wire, faults of messages, loss and bit errors, delay and jitter, a stall, the limit of throughput.
+/// wire, faults of corrections, faults of messages, loss and bit errors, delay and jitter, a stall, the limit of
+/// throughput.
 ///
 /// Messages are UBX, NMEA, RTCM 3 and SBF with right checksums; everything else passes the faults of messages, but
 /// waits for its turn. While one of these faults is on (jitter and garbage among them) bytes are kept until their

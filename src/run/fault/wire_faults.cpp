@@ -1,36 +1,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "base/core/bytes.hpp"
 #include "detail/fault_catalogue.hpp"
+#include "detail/wire_fault.hpp"
 #include "firmware/core/firmware_faults.hpp"
 
 namespace skyloop::inline run {
-namespace {
-
-// Worsens one direction by a strength from 0 to 1.
-using WireWorsening = std::function<void(WireDirection&, const FaultMoment&)>;
-
-// Of two independent causes at least one strikes.
-void combine(double& probability, double with) { probability = 1 - (1 - probability) * (1 - with); }
-
-constexpr std::string_view wire_directions[] = {"to_client", "to_receiver", "both"};
-// What a receiver without commands does not read may be lost.
-std::string why_unread(const UsedReceiver& receiver, std::string_view direction) {
-    return direction == "to_receiver" && !takes_commands(receiver) ? std::string(command_input.lack) : std::string();
-}
-
-constexpr ParameterSpec wire_direction =
-    word_parameter("direction", "to_client", wire_directions,
-                   "which bytes: those of the receiver to its client, those of the client, or both")
-        .judged_by(why_unread);
 
 Fault worsened(const Parameters& parameters, WireWorsening worsen) {
     const std::string direction = parameters.text("direction");
@@ -41,6 +22,18 @@ Fault worsened(const Parameters& parameters, WireWorsening worsen) {
         if (to_receiver) worsen(wire.to_receiver, moment);
     });
 }
+
+namespace {
+
+// What a receiver without commands does not read may be lost.
+std::string why_unread(const UsedReceiver& receiver, std::string_view direction) {
+    return direction == "to_receiver" && !takes_commands(receiver) ? std::string(command_input.lack) : std::string();
+}
+
+constexpr ParameterSpec wire_direction =
+    word_parameter("direction", "to_client", wire_directions,
+                   "which bytes: those of the receiver to its client, those of the client, or both")
+        .judged_by(why_unread);
 
 // Raises one probability of a direction.
 template <double WireDirection::*which>

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
 #include "run/fault/command.hpp"
 #include "run/fault/fault_kind.hpp"
@@ -48,6 +50,20 @@ std::optional<std::string> too_early_to_roll_over(const FaultEntry& fault, GpsTi
                "[[fault]] '{}': rollovers = {:g} leads to before 1980-01-06; expected {}a beginning at {} or "
                "later",
                fault.when.name, rollovers, rollovers > 1 ? "fewer, or " : "", check_utc_text(first));
+}
+
+// A mount point that is mistaken for another one is there.
+std::optional<std::string> unknown_mount_point(const FaultEntry& fault, const Scenario& scenario) {
+    if (fault.kind != "wrong_mount_point") return std::nullopt;
+    const std::string name = fault.parameters.text("of_receiver");
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < scenario.receivers.size(); ++i)
+        names.push_back(receiver_name(scenario, i));
+    if (std::find(names.begin(), names.end(), name) != names.end()) return std::nullopt;
+    const std::vector<std::string_view> candidates(names.begin(), names.end());
+    return fault.told_at +
+           fmt::format("[[fault]] '{}': of_receiver is '{}'; expected the name of a receiver of the run{}",
+                       fault.when.name, name, did_you_mean(name, candidates));
 }
 
 // Which entries begin before the end, or may: those that a command starts among them.
@@ -202,6 +218,8 @@ Result<void> check_timeline(const Scenario& scenario, GpsTime start) {
     for (const FaultEntry& fault : scenario.faults)
         if (const auto mistake = too_early_to_roll_over(fault, start, scenario.run.seed))
             return fail(ErrorCode::input, *mistake);
+    for (const FaultEntry& fault : scenario.faults)
+        if (const auto mistake = unknown_mount_point(fault, scenario)) return fail(ErrorCode::input, *mistake);
     auto early = early_time("fault", scenario.faults, start);
     if (!early) early = early_time("command", scenario.commands, start);
     if (early) return fail(ErrorCode::input, *early);

@@ -32,9 +32,8 @@ struct SharedPort {
         }
         std::vector<Station> stations;
         stations.emplace_back(std::move(parts));
-        stations.front().add_tap([this](const firmware::Receiver::Sent& sent, GpsTime) {
-            if (sent.port == port) tapped.insert(tapped.end(), sent.bytes.begin(), sent.bytes.end());
-        });
+        stations.front().add_tap(
+            port, [this](ByteSpan bytes, GpsTime) { tapped.insert(tapped.end(), bytes.begin(), bytes.end()); });
         emulator.emplace(Emulator::Parts{std::move(stations), std::make_unique<test::TickingPacer>(start, 1ms)}, start);
     }
 

@@ -105,7 +105,7 @@ Overlay random_overlay(std::uint64_t seed, FaultBench bench) {
     Overlay overlay;
     for (std::uint64_t count = 2 + below(3); overlay.kinds.size() < count;) {
         const FaultRow& row = fault_rows[below(std::size(fault_rows))];
-        if (row.client_must_configure || row.seen_in == "pace" || (row.bench == measuring && bench == sensor)) continue;
+        if (row.client_must_configure || row.seen_in == "pace" || (row.bench != sensor && row.bench != bench)) continue;
         if (!overlay.kinds.insert(std::string(row.kind)).second) continue;
         overlay.layers.insert(find_fault_kind(row.kind)->layer);
         overlay.exact = overlay.exact && row.bound_m < 0;

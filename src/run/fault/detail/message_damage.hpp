@@ -13,6 +13,7 @@
 #include "base/core/bytes.hpp"
 #include "base/core/random.hpp"
 #include "base/time/gps_time.hpp"
+#include "correction_damage.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "run/fault/wire_damage.hpp"
 
@@ -29,8 +30,9 @@ struct TimedBytes {
 void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random);
 
 /// Cuts a stream into messages and damages these: checksum errors, truncation, merging, duplication, reordering,
-/// garbage between them, and the jitter of each. Everything is appended to a list in the order of time. State: the
-/// bytes of the unfinished message, one message that is late, what is due, the random numbers.
+/// garbage between them, and the jitter of each; before all that, what is wrong with corrections. Everything is
+/// appended to a list in the order of time. State: the bytes of the unfinished message, messages that are late, what is
+/// due, the random numbers.
 class MessageDamage {
 public:
     MessageDamage(std::uint64_t seed, std::string_view stream);
@@ -45,7 +47,7 @@ public:
     void advance(GpsTime now, std::vector<TimedBytes>& out);
     /// When something comes out at the latest that is held now, or garbage of its own.
     [[nodiscard]] std::optional<GpsTime> next_at() const;
-    [[nodiscard]] std::size_t waiting() const { return undecided_ + late_.size(); }
+    [[nodiscard]] std::size_t waiting() const { return undecided_ + late_.size() + delayed_bytes_; }
     /// Throws away what is held, as lost.
     void clear();
     [[nodiscard]] const WireDamageCounts& counts() const { return counts_; }
@@ -67,9 +69,15 @@ private:
         GpsTime time;
         std::size_t count;
     };
+    struct DelayedPiece {
+        GpsTime due;
+        StreamPiece piece;
+    };
     [[nodiscard]] bool happens(double probability, Draw draw);
     std::size_t place_within(std::size_t size);
     void decide(StreamPiece piece, GpsTime now, std::vector<TimedBytes>& out);
+    void correct(StreamPiece piece, GpsTime now, std::vector<TimedBytes>& out);
+    void deliver_delayed(GpsTime now, std::vector<TimedBytes>& out);
     void damage(StreamPiece piece, GpsTime now, std::vector<TimedBytes>& out);
     void cut(Bytes& message);
     void emit(Bytes bytes, GpsTime now, std::vector<TimedBytes>& out);
@@ -94,6 +102,9 @@ private:
     bool head_is_missing_ = false;  // of the next message
     Bytes late_;
     GpsTime late_since_{};
+    CorrectionDamage corrections_;
+    std::deque<DelayedPiece> delayed_;  // corrections, by their times
+    std::size_t delayed_bytes_ = 0;
     // Garbage is a Poisson process: it comes when its rate, integrated over time, has reached a threshold.
     double integral_ = 0, threshold_ = 0;
     GpsTime integrated_to_{};
