@@ -105,16 +105,24 @@ void Station::follow_faults(GpsTime now) {
     faults_act_ = !faults_.empty();
     parts_.receiver.set_faults(faults_.firmware(now));
     WireConditions conditions = faults_.wire(now);
+    follow_faults_of_corrections(conditions, now);
     if (!parts_.repeated.empty()) conditions.to_receiver.garbage.clear();  // it was heard, and is heard again
     for (FaultyWire& wire : faulty_wires_)
         wire.set(conditions, now);
-    corrections_wire_.set(conditions, now);
+    conditions.to_receiver = {};
     for (Listener& listener : listeners_)
         listener.wire.set(conditions, now);
-    wrong_corrections_from_ = conditions.corrections_from;
     for (Wire& wire : parts_.wires)
         wire.link.set_plugged(!conditions.unplugged);
     if (parts_.power) parts_.power->want(conditions.power_cut ? PowerState::cut : PowerState::on);
+}
+
+// The way in of the wire from another receiver.
+void Station::follow_faults_of_corrections(WireConditions conditions, GpsTime now) {
+    if (!parts_.corrections_from) return;
+    wrong_corrections_from_ = conditions.corrections_from;
+    conditions.to_client = {};
+    corrections_wire_.set(conditions, now);
 }
 
 // An end without a wire hears what its bare contacts pick up.

@@ -163,6 +163,7 @@ private:
     [[nodiscard]] PortSpeed line_speed(std::size_t wire) const;
     [[nodiscard]] bool has_to_wait(std::size_t wire) const;
     void tell_position();
+    void follow_faults_of_corrections(WireConditions conditions, GpsTime now);
     void follow_settings(GpsTime now);
 
     struct Listener {

@@ -1,6 +1,7 @@
 #include "detail/terrestrial_frame.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <proj.h>
 
 #include <algorithm>
@@ -23,6 +24,9 @@ double decimal_year(GpsTime time) {
 
 Result<std::shared_ptr<const TerrestrialFrame>> TerrestrialFrame::find(std::string_view name) {
     const auto* const found = std::find(std::begin(terrestrial_frame_names), std::end(terrestrial_frame_names), name);
+    if (found == std::end(terrestrial_frame_names))
+        return fail(ErrorCode::usage, fmt::format("'{}' is no frame; expected one of {}", name,
+                                                  fmt::join(terrestrial_frame_names, ", ")));
     const auto at = static_cast<std::size_t>(found - std::begin(terrestrial_frame_names));
     auto frame = std::make_shared<TerrestrialFrame>();
     frame->context_ = {proj_context_create(), proj_context_destroy};

@@ -18,7 +18,8 @@ inline constexpr std::string_view terrestrial_frame_names[] = {"etrf2000", "nad8
 /// Coordinates by another frame than ITRF2014, by which orbits are broadcast to centimetres (WGS 84). Of one thread.
 class TerrestrialFrame {
 public:
-    /// @param name one of terrestrial_frame_names. Fails with `outside` where PROJ lacks its database.
+    /// Fails with `usage` for a name that is none of terrestrial_frame_names, with `outside` where PROJ lacks its
+    /// database.
     static Result<std::shared_ptr<const TerrestrialFrame>> find(std::string_view name);
 
     /// What a point of ITRF2014 is told as. @param time of the coordinates, since plates move
