@@ -16,7 +16,7 @@ HEADER = ("| surroundings | motion | km | fixed | first fix, s | error 68 %, mm 
           "RTKLIB fixed | first fix, s | error 68 %, mm | wrong |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|")
 
 RTKLIB = """pos1-posmode=kinematic
-pos1-frequency=l1+l2
+pos1-frequency=l1+2
 pos1-elmask=10
 pos1-ionoopt=brdc
 pos1-tropopt=saas
