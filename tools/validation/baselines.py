@@ -49,7 +49,7 @@ class Setup:
 
 @dataclasses.dataclass
 class Epoch:
-    corrected: bool  # by the base, in whatever way
+    at_s: int  # since both receivers were started
     fixed: bool
     level_m: float  # error
     up_m: float
@@ -104,11 +104,12 @@ def rover_epochs(path):
     epochs, truths = [], {}
     with open(path, encoding="utf-8", newline="") as file:
         for line in csv.DictReader(file):
-            truths[round(float(line["tow_s"]))] = tuple(float(line[f"true_{name}"]) for name in ("lat_deg", "lon_deg", "height_m"))
+            second = round(float(line["tow_s"]))
+            truths[second] = tuple(float(line[f"true_{name}"]) for name in ("lat_deg", "lon_deg", "height_m"))
             if line["lat_deg"]:
                 level = math.hypot(float(line["east_error_m"]), float(line["north_error_m"]))
-                kind = line["fix_type"]
-                epochs.append(Epoch(kind in ("dgnss", "rtk_float", "rtk_fixed"), kind == "rtk_fixed", level, float(line["up_error_m"]), float(line["h_acc_m"])))
+                epochs.append(Epoch(second - min(truths), line["fix_type"] == "rtk_fixed", level, float(line["up_error_m"]),
+                                    float(line["h_acc_m"])))
     return epochs, truths
 
 
@@ -119,10 +120,10 @@ def rtklib_epochs(setup, base, rover, truths):
     epochs = []
     for line in positions.read_text(encoding="ascii").splitlines():
         words = line.split()
-        if line.startswith("%") or round(float(words[1])) not in truths:
+        if line.startswith("%") or (second := round(float(words[1]))) not in truths:
             continue
-        level, up = level_and_up([float(word) for word in words[2:5]], truths[round(float(words[1]))])
-        epochs.append(Epoch(True, words[5] == "1", level, up, math.hypot(float(words[7]), float(words[8]))))
+        level, up = level_and_up([float(word) for word in words[2:5]], truths[second])
+        epochs.append(Epoch(second - min(truths), words[5] == "1", level, up, math.hypot(float(words[7]), float(words[8]))))
     return epochs
 
 
@@ -142,9 +143,8 @@ def run(program, setup, seed, folder):
 
 
 def first_fix(epochs):
-    """Epochs, from the first with corrections to the first that is fixed."""
-    begun = next((i for i, epoch in enumerate(epochs) if epoch.corrected), 0)
-    return next((str(i - begun) for i, epoch in enumerate(epochs) if epoch.fixed), "–")
+    """Seconds."""
+    return next((str(epoch.at_s) for epoch in epochs if epoch.fixed), "–")
 
 
 def summary(series):

@@ -29,6 +29,17 @@ std::optional<std::string> percent_decoded(std::string_view text) {
     return decoded;
 }
 
+// All but what RFC 3986, section 2.3, leaves as it is.
+std::string percent_encoded(std::string_view text) {
+    std::string encoded;
+    for (const char c : text) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                           std::string_view("-._~").find(c) != std::string_view::npos;
+        encoded += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+    return encoded;
+}
+
 // What would end a line or a word of a request.
 bool fits_a_header(std::string_view text) {
     return std::all_of(text.begin(), text.end(),
@@ -83,7 +94,8 @@ std::string without_secrets(std::string_view uri) {
 }
 
 std::string shown_uri(const NtripAddress& address) {
-    return fmt::format("{}://{}/{}", address.tls ? "ntrips" : "ntrip", shown_address(address.caster), address.mount);
+    return fmt::format("{}://{}/{}", address.tls ? "ntrips" : "ntrip", shown_address(address.caster),
+                       percent_encoded(address.mount));
 }
 
 Result<NtripAddress> parse_ntrip_uri(std::string_view text) {

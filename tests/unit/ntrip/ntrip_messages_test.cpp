@@ -50,6 +50,7 @@ TEST(NtripAddress, SaysWhatIsWrongWithoutSecrets) {
 
 TEST(NtripAddress, IsShownWithoutSecrets) {
     EXPECT_EQ(shown_uri(address_of("ntrip://me:secret@host/M")), "ntrip://host:2101/M");
+    EXPECT_EQ(shown_uri(address_of("ntrip://host/A%40b%25")), "ntrip://host:2101/A%40b%25");
     EXPECT_EQ(without_secrets("uart2=ntrip://me:se@cret@host:1/M"), "uart2=ntrip://host:1/M");
     EXPECT_EQ(without_secrets("ntrip://host/M"), "ntrip://host/M");
 }
