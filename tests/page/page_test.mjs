@@ -10,7 +10,7 @@ import { fixIs, keep, laptop, noOverflow, phone, pictures } from "./looks.mjs";
 import { correctionsAreShown, nothingOfCorrections } from "./rtk_steps.mjs";
 
 const skipped = 77;
-const whole = 285_000; // ms, all of it
+const whole = 385_000; // ms, all of it
 const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
 const chromium = process.env.SKYLOOP_CHROMIUM;
 
