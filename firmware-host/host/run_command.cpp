@@ -270,7 +270,7 @@ int check(const RunOptions& options) {
     mode.only_checked = true;
     auto assembly = assemble(*scenario, data_folders(), mode);
     if (!assembly) return messages.error(with_other_mistakes(assembly.error(), *scenario, data_folders(), mode.now));
-    if (const auto caster = RunCaster::check(*scenario, *assembly->emulator); !caster)
+    if (const auto caster = RunCaster::check(*scenario, *assembly, {data_folders(), SKYLOOP_VERSION}); !caster)
         return messages.error(caster.error());
     for (const auto& warning : {vehicle_warning(*scenario), pause_warning(*scenario)})
         if (warning) assembly->warnings.push_back(*warning);

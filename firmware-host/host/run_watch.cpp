@@ -6,6 +6,7 @@
 
 #include "base/core/files.hpp"
 #include "base/core/json.hpp"
+#include "data_folders.hpp"
 #include "file_streams.hpp"
 #include "run/control/command_json.hpp"
 #include "run/control/status_json.hpp"
@@ -270,7 +271,7 @@ Result<void> RunWatch::open_outputs(bool live) {
 // What others are told belongs to a live run.
 Result<void> RunWatch::open_caster(bool live) {
     if (scenario_.caster.listen.empty() || !live) return {};
-    auto caster = RunCaster::start(scenario_, *assembly_.emulator, assembly_.place);
+    auto caster = RunCaster::start(scenario_, assembly_, {data_folders(), SKYLOOP_VERSION});
     if (!caster) return fail(caster.error());
     caster_ = std::move(*caster);
     if (std::string warning = caster_->warning(); !warning.empty()) assembly_.warnings.push_back(std::move(warning));

@@ -72,7 +72,8 @@ std::optional<Rtcm3Station> decode_station(const Rtcm3Message& message) {
     bits.skip(12);
     Rtcm3Station result;
     result.station = static_cast<int>(bits.get(12));
-    bits.skip(6 + 4);  // year of the frame, systems, kind of station
+    bits.skip(6 + 3);  // year of the frame, systems
+    result.computed = bits.get(1) != 0;
     result.position[0] = bits.get_signed(38);
     bits.skip(2);
     result.position[1] = bits.get_signed(38);
@@ -88,7 +89,8 @@ Bytes encode(const Rtcm3Station& station) {
     BitWriter bits;
     put_rtcm3_begin(bits, station.antenna_height ? station_1006 : station_1005, station.station);
     bits.put(0, 6);
-    bits.put(all_systems << 1, 4);
+    bits.put(all_systems, 3);
+    bits.put(station.computed ? 1 : 0, 1);
     bits.put_signed(station.position[0], 38);
     bits.put(0, 2);
     bits.put_signed(station.position[1], 38);

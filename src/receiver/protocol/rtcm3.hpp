@@ -31,6 +31,7 @@ struct Rtcm3Station {
     int station = 0;
     std::array<std::int64_t, 3> position{};  ///< ECEF, 0.1 mm; ±13 743 895 m fit
     std::optional<int> antenna_height;       ///< 0.1 mm over the marker, 0 … 65535: of 1006 alone
+    bool computed = false;                   ///< DF141: it is no real station
     bool operator==(const Rtcm3Station&) const = default;
 };
 std::optional<Rtcm3Station> decode_station(const Rtcm3Message& message);

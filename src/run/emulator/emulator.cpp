@@ -81,7 +81,7 @@ void Emulator::await_clients(const std::atomic<bool>& stop) {
     parts_.pacer->pause(now_);
     while (!stop && !all_connected()) {
         Pacer::rest();
-        if (look_) look_(now_);
+        look();
     }
     parts_.pacer->resume(now_);
 }
@@ -94,7 +94,7 @@ void Emulator::await_feeds(const std::atomic<bool>& stop, const std::function<vo
         (void)all_connected();  // a host on the wire must be answered while time rests
         hear_feeds();
         if (meanwhile) meanwhile();
-        if (look_) look_(now_);
+        look();
     }
     parts_.pacer->resume(now_);
 }
@@ -133,7 +133,7 @@ void Emulator::advance_to(GpsTime end, const std::atomic<bool>& stop, LastInstan
         direct();
         take_in(time);
         if (now_ < end || last == LastInstant::included) run_epochs(*lateness);
-        if (look_) look_(now_);
+        look();
         if (recording_failed()) break;
     }
 }
@@ -172,7 +172,7 @@ std::uint64_t Emulator::bytes_out() const {
 void Emulator::stand_by() {
     (void)all_connected();  // a host on the wire must be answered while time rests
     direct_stations();
-    if (look_) look_(now_);
+    look();
 }
 
 void Emulator::direct_stations() {
@@ -182,6 +182,11 @@ void Emulator::direct_stations() {
 }
 
 void Emulator::direct() { parts_.director.advance(now_, parts_.stations, *parts_.pacer); }
+
+void Emulator::look() const {
+    for (const auto& callback : looks_)
+        callback(now_);
+}
 
 bool Emulator::recording_failed() const {
     return std::any_of(parts_.stations.begin(), parts_.stations.end(),

@@ -39,8 +39,8 @@ public:
     void replace_director(Director director) { parts_.director = std::move(director); }
     /// Tells an observer what happens; it outlives the run.
     void add_observer(RunObserver* observer) { parts_.director.add_observer(observer); }
-    /// Called after each instant, and again and again while time stands still.
-    void on_look(std::function<void(GpsTime)> callback) { look_ = std::move(callback); }
+    /// Called after each instant, and again and again while time stands still, beside those that are called already.
+    void on_look(std::function<void(GpsTime)> callback) { looks_.push_back(std::move(callback)); }
     /// Once nothing can refuse this run any more: makes the files of the recordings, in the place of those of a former
     /// run, and lets the wires make room. Fails with `outside`.
     Result<void> begin();
@@ -95,6 +95,7 @@ private:
     [[nodiscard]] std::uint64_t bytes_out() const;
     [[nodiscard]] bool goes_on(GpsTime end, LastInstant last) const;
     void run_epochs(Nanoseconds lateness);
+    void look() const;
     [[nodiscard]] bool recording_failed() const;
 
     Parts parts_;
@@ -102,7 +103,7 @@ private:
     std::vector<Dialogue> dialogues_;           // one a station
     std::vector<std::optional<Trace>> traces_;  // of the present instant, one a station
     std::function<void(const Status&)> status_;
-    std::function<void(GpsTime)> look_;
+    std::vector<std::function<void(GpsTime)>> looks_;
 };
 
 /// In the order of the stations.

@@ -6,7 +6,6 @@
 #include "detail/modern_assembly.hpp"
 #include "detail/receiver_assembly.hpp"
 #include "receiver/error_model/model_effects.hpp"
-#include "world/propagation/modern_effects.hpp"
 #include "world/rinex/ionex_file.hpp"
 
 namespace skyloop::inline run {
@@ -59,9 +58,8 @@ constexpr Seconds warm_search{3};
 
 }  // namespace
 
-Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
-                                                                          const NavigationSource& navigation,
-                                                                          const WorldData& world) {
+Result<ModernWorld> modern_world_of(const Scenario& scenario, const NavigationSource& navigation,
+                                    const WorldData& world) {
     ModernSettings settings = effective(scenario.model.modern);
     // The scene describes obstacles and echoes, but no tunnels.
     if (scenario.scene.given()) {
@@ -84,7 +82,15 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const 
     context.geoid = world.geoid;
     context.seed = scenario.run.seed_of_sky();
     context.gas_losses = world.gas_losses;
-    return modern_effects(settings.propagation, context);
+    return ModernWorld{std::move(settings.propagation), std::move(context)};
+}
+
+Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
+                                                                          const NavigationSource& navigation,
+                                                                          const WorldData& data) {
+    const auto world = modern_world_of(scenario, navigation, data);
+    if (!world) return fail(world.error());
+    return modern_effects(world->parameters, world->context);
 }
 
 MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup,

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "firmware/core/board_profile.hpp"
+#include "receiver/protocol/rtcm3_signals.hpp"
 #include "run/emulator/wires.hpp"
 
 namespace skyloop::inline run {
@@ -157,12 +159,20 @@ Result<std::vector<CasterMount>> mounts_of(const Scenario& scenario, const std::
     const CasterSettings& caster = scenario.caster;
     std::vector<CasterMount> mounts = caster.mounts;
     for (const CasterMount& mount : mounts)
-        if (const auto& board = stations.at(mount.receiver).receiver().board(); !sends_rtcm(board))
+        if (const auto& board = stations.at(mount.receiver).receiver().board();
+            !mount.virtual_station && !sends_rtcm(board))
             return fail(ErrorCode::usage,
                         fmt::format("{}{} sends no RTCM; expected a board that does, such as ublox-f9p", mount.told_at,
                                     board.name));
     for (std::size_t i = 0; i < stations.size() && caster.mounts.empty(); ++i)
         if (sends_rtcm(stations[i].receiver().board())) mounts.push_back({mount_name(stations[i].name()), i, "", ""});
+    if (caster.virtual_mount) {
+        const CasterMount& more = *caster.virtual_mount;
+        if (std::any_of(mounts.begin(), mounts.end(), [&](const CasterMount& m) { return m.name == more.name; }))
+            return fail(ErrorCode::usage, fmt::format("{}'{}' is the mount point of a receiver; expected another name",
+                                                      more.told_at, more.name));
+        mounts.push_back(more);
+    }
     if (mounts.empty())
         return fail(
             ErrorCode::usage,
@@ -172,6 +182,7 @@ Result<std::vector<CasterMount>> mounts_of(const Scenario& scenario, const std::
 }
 
 struct PluggedMount {
+    std::size_t receiver = 0;
     firmware::PortId port;
     std::shared_ptr<PortCorrections> source;
 };
@@ -188,7 +199,7 @@ Result<PluggedMount> plug_of(const CasterMount& mount, const Station& station, c
     SourceRecord about;
     about.mount = mount.name;
     about.identifier = fmt::format("{} ({})", station.name(), board.name);
-    return PluggedMount{*port,
+    return PluggedMount{mount.receiver, *port,
                         std::make_shared<PortCorrections>(about, place, board.maker == firmware::MakerKind::sbf)};
 }
 
@@ -200,44 +211,131 @@ std::string RunCaster::warning() const {
                         : std::string();
 }
 
-Result<void> RunCaster::check(const Scenario& scenario, const Emulator& emulator) {
+namespace {
+
+Result<VirtualSky> virtual_sky(const Scenario& scenario, const Assembly& assembly, const CasterHost& host) {
+    return VirtualSky::of(
+        scenario, {assembly.emulator->simulation().navigation(), assembly.geoid.get(), assembly.start, host.data});
+}
+
+// The first of the mount points with virtual stations; null: there is none.
+const CasterMount* first_virtual(const std::vector<CasterMount>& mounts) {
+    const auto found =
+        std::find_if(mounts.begin(), mounts.end(), [](const CasterMount& mount) { return mount.virtual_station; });
+    return found == mounts.end() ? nullptr : &*found;
+}
+
+Error at_mount(const CasterMount& mount, Error error) {
+    error.message = mount.told_at + error.message;
+    return error;
+}
+
+SourceRecord virtual_record(const CasterMount& mount, const std::set<SystemSignal>& signals, const Geodetic& place) {
+    SourceRecord about;
+    about.mount = mount.name;
+    about.identifier = fmt::format("{} (virtual reference stations)", mount.name);
+    about.latitude_deg = place.latitude.deg();
+    about.longitude_deg = place.longitude.deg();
+    about.carrier = 2;
+    std::vector<std::string> details, systems;
+    for (const int number : {1006, 1008, 1033})
+        details.push_back(fmt::format("{}({})", number, VirtualStations::station_every_s));
+    for (const MsmSystem& system : msm_systems) {
+        const auto constellation = msm_constellation(system.first + mount.msm);
+        if (std::none_of(signals.begin(), signals.end(),
+                         [&](const SystemSignal& signal) { return signal.constellation == constellation; }))
+            continue;
+        details.push_back(fmt::format("{}(1)", system.first + mount.msm));
+        systems.emplace_back(system.name);
+    }
+    if (signals.contains({Constellation::glonass, first_signal(Constellation::glonass)}))
+        details.push_back(fmt::format("1230({})", VirtualStations::station_every_s));
+    about.details = fmt::format("{}", fmt::join(details, ","));
+    about.systems = fmt::format("{}", fmt::join(systems, "+"));
+    return about;
+}
+
+// The virtual ones among the mount points; null where there are none.
+Result<std::shared_ptr<VirtualStations>> plug_in_virtual(const std::vector<CasterMount>& mounts,
+                                                         NtripCasterSettings& settings, const Scenario& scenario,
+                                                         const Assembly& assembly, const CasterHost& host) {
+    const CasterMount* const first = first_virtual(mounts);
+    if (first == nullptr) return nullptr;
+    auto sky = virtual_sky(scenario, assembly, host);
+    if (!sky) return fail(at_mount(*first, sky.error()));
+    const std::set<SystemSignal> signals = sky->signals();
+    auto stations = std::make_shared<VirtualStations>(std::move(*sky), scenario.run.seed_of_receivers(), host.version);
+    for (const CasterMount& mount : mounts)
+        if (mount.virtual_station)
+            settings.mounts[mount.name] = stations->mount(virtual_record(mount, signals, assembly.place), mount.msm);
+    return stations;
+}
+
+}  // namespace
+
+Result<void> RunCaster::check(const Scenario& scenario, const Assembly& assembly, const CasterHost& host) {
     if (scenario.caster.listen.empty()) return {};
     const auto address = parse_tcp_address(scenario.caster.listen);
     if (!address) return fail(ErrorCode::usage, scenario.caster.told_at + address.error().message);
-    const auto mounts = mounts_of(scenario, emulator.stations());
+    const std::vector<Station>& stations = std::as_const(*assembly.emulator).stations();
+    const auto mounts = mounts_of(scenario, stations);
     if (!mounts) return fail(mounts.error());
     for (const CasterMount& mount : *mounts)
-        if (const auto port = port_of(mount, emulator.stations().at(mount.receiver).receiver().board()); !port)
+        if (const auto port = port_of(mount, stations.at(mount.receiver).receiver().board());
+            !mount.virtual_station && !port)
             return fail(ErrorCode::usage, mount.told_at + port.error().message);
+    if (const CasterMount* const mount = first_virtual(*mounts))
+        if (const auto sky = virtual_sky(scenario, assembly, host); !sky) return fail(at_mount(*mount, sky.error()));
     return {};
 }
 
-Result<RunCaster> RunCaster::start(const Scenario& scenario, Emulator& emulator, const Geodetic& place) {
-    const CasterSettings& asked = scenario.caster;
-    auto address = parse_tcp_address(asked.listen);
-    if (!address) return fail(ErrorCode::usage, asked.told_at + address.error().message);
-    std::vector<Station>& stations = emulator.stations();
-    const auto mounts = mounts_of(scenario, stations);
-    if (!mounts) return fail(mounts.error());
-    NtripCasterSettings settings{std::move(*address), asked.users, {}};
+namespace {
+
+// The receivers' mount points, and who feeds them.
+Result<std::vector<PluggedMount>> plug_in_receivers(const std::vector<CasterMount>& mounts,
+                                                    NtripCasterSettings& settings, const std::vector<Station>& stations,
+                                                    const Geodetic& place) {
     std::vector<PluggedMount> plugged;
-    for (const CasterMount& mount : *mounts) {
+    for (const CasterMount& mount : mounts) {
+        if (mount.virtual_station) continue;
         auto plug = plug_of(mount, stations.at(mount.receiver), place);
         if (!plug) return fail(plug.error());
         settings.mounts[mount.name] = plug->source;
         plugged.push_back(std::move(*plug));
     }
+    return plugged;
+}
+
+}  // namespace
+
+Result<RunCaster> RunCaster::start(const Scenario& scenario, Assembly& assembly, const CasterHost& host) {
+    const CasterSettings& asked = scenario.caster;
+    auto address = parse_tcp_address(asked.listen);
+    if (!address) return fail(ErrorCode::usage, asked.told_at + address.error().message);
+    Emulator& emulator = *assembly.emulator;
+    const auto mounts = mounts_of(scenario, emulator.stations());
+    if (!mounts) return fail(mounts.error());
+    NtripCasterSettings settings{std::move(*address), asked.users, {}};
+    const auto plugged = plug_in_receivers(*mounts, settings, emulator.stations(), assembly.place);
+    if (!plugged) return fail(plugged.error());
+    const auto virtual_stations = plug_in_virtual(*mounts, settings, scenario, assembly, host);
+    if (!virtual_stations) return fail(virtual_stations.error());
     auto started = NtripCaster::start(std::move(settings));
     if (!started) return fail(started.error());
     const std::shared_ptr<NtripCaster> caster = std::move(*started);
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < plugged.size(); ++i) {
-        names.push_back((*mounts)[i].name);
-        stations.at((*mounts)[i].receiver)
-            .add_tap(plugged[i].port, [caster, source = plugged[i].source](ByteSpan bytes, GpsTime now) {
+    for (const PluggedMount& plug : *plugged)
+        emulator.stations()
+            .at(plug.receiver)
+            .add_tap(plug.port, [caster, source = plug.source](ByteSpan bytes, GpsTime now) {
                 if (source->hear(bytes, now)) caster->wake();
             });
-    }
+    if (*virtual_stations)
+        emulator.on_look([caster, stations = *virtual_stations](GpsTime now) {
+            if (stations->look(now)) caster->wake();
+        });
+    std::vector<std::string> names;
+    for (const CasterMount& mount : *mounts)
+        names.push_back(mount.name);
     const bool open_to_all = asked.users.empty() && !caster->loopback();
     return RunCaster(caster, fmt::format("{} ({})", shown_address(caster->address()), fmt::join(names, ", ")),
                      open_to_all);

@@ -15,7 +15,8 @@
 #include "base/geo/geodetic.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
-#include "run/emulator/emulator.hpp"
+#include "run/emulator/assembly.hpp"
+#include "run/emulator/virtual_stations.hpp"
 #include "run/scenario/scenario.hpp"
 #include "wire/ntrip/ntrip_caster.hpp"
 #include "wire/ntrip/source_table.hpp"
@@ -58,14 +59,21 @@ private:
     std::uint64_t bytes_ = 0;
 };
 
+/// What the caster of a run has of the program.
+struct CasterHost {
+    DataFolders data;     ///< for virtual stations
+    std::string version;  ///< of skyloop, as their firmware
+};
+
 class RunCaster {
 public:
     /// What start() would refuse before it asks the system.
-    static Result<void> check(const Scenario& scenario, const Emulator& emulator);
+    static Result<void> check(const Scenario& scenario, const Assembly& assembly, const CasterHost& host);
     /// Listens when it returns, and hears the receivers from here on. Fails with `usage` for an address, a port or a
-    /// name that cannot be, and where no receiver can send RTCM; with `outside` when the system refuses.
-    /// @param place of the receivers until they tell it
-    static Result<RunCaster> start(const Scenario& scenario, Emulator& emulator, const Geodetic& place);
+    /// name that cannot be, where no receiver can send RTCM, and for virtual stations of a sensor model; with `input`
+    /// where what these need of files is not there; with `outside` when the system refuses.
+    /// @param assembly outlives it
+    static Result<RunCaster> start(const Scenario& scenario, Assembly& assembly, const CasterHost& host);
     /// "127.0.0.1:2101 (BASE, ROVER)"
     [[nodiscard]] const std::string& description() const { return description_; }
     [[nodiscard]] NtripCasterCounts counts() const { return caster_->counts(); }

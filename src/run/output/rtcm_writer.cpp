@@ -75,13 +75,10 @@ public:
         const firmware::RtcmEpoch epoch{record.observations, record.leap_seconds, record.clock_drift,
                                         settings_.station};
         std::vector<Bytes> frames;
-        if (record.station_due) put_station(record, epoch, frames);
-        std::vector<Constellation> systems;
-        for (const Constellation system : msm_systems_in_order)
-            if (firmware::has_msm_signals(epoch, system)) systems.push_back(system);
-        for (const Constellation system : systems)
-            std::ranges::move(firmware::msm_frames(epoch, msm_number(system, settings_.msm), system != systems.back()),
-                              std::back_inserter(frames));
+        if (record.station_due)
+            frames = station_frames({settings_.station, record.antenna, sources_.version,
+                                     firmware::has_msm_signals(epoch, Constellation::glonass)});
+        std::ranges::move(observation_frames(epoch, settings_.msm), std::back_inserter(frames));
         for (const Ephemeris& ephemeris : record.ephemerides)
             if (Bytes frame = encode_ephemeris(ephemeris, record.now); !frame.empty()) frames.push_back(frame);
         return frames;
@@ -104,31 +101,44 @@ private:
         return found;
     }
 
-    void put_station(const RtcmRecord& record, const firmware::RtcmEpoch& epoch, std::vector<Bytes>& frames) const {
-        Rtcm3Station station;
-        station.station = settings_.station;
-        for (std::size_t i = 0; i < 3; ++i)
-            station.position[i] = std::llround(record.antenna.vector()[static_cast<Eigen::Index>(i)] * 1e4);
-        station.antenna_height = 0;
-        frames.push_back(encode(station));
-        const std::string no_model = "ADVNULLANTENNA";  // as rcvr_ant.tab of the IGS calls it
-        for (const int number : {1008, 1033})
-            frames.push_back(
-                encode(Rtcm3Descriptors{number, settings_.station, no_model, 0, "", "SKYLOOP", sources_.version, ""}));
-        if (!firmware::has_msm_signals(epoch, Constellation::glonass)) return;
-        Rtcm3GlonassBiases biases;
-        biases.station = settings_.station;
-        biases.aligned = true;
-        biases.bias[0] = biases.bias[2] = 0;  // of L1 C/A and L2 C/A, the signals that are observed
-        frames.push_back(encode(biases));
-    }
-
     const OutputSettings settings_;
     const WriterSources sources_;
     Cadence stations_, records_;
 };
 
 }  // namespace
+
+std::vector<Bytes> station_frames(const BaseStation& base) {
+    std::vector<Bytes> frames;
+    Rtcm3Station station;
+    station.station = base.number;
+    for (std::size_t i = 0; i < 3; ++i)
+        station.position[i] = std::llround(base.antenna.vector()[static_cast<Eigen::Index>(i)] * 1e4);
+    station.antenna_height = 0;
+    station.computed = base.computed;
+    frames.push_back(encode(station));
+    const std::string no_model = "ADVNULLANTENNA";  // as rcvr_ant.tab of the IGS calls it
+    for (const int number : {1008, 1033})
+        frames.push_back(encode(Rtcm3Descriptors{number, base.number, no_model, 0, "", "SKYLOOP", base.version, ""}));
+    if (!base.glonass) return frames;
+    Rtcm3GlonassBiases biases;
+    biases.station = base.number;
+    biases.aligned = true;
+    biases.bias[0] = biases.bias[2] = 0;  // of L1 C/A and L2 C/A, the signals that are observed
+    frames.push_back(encode(biases));
+    return frames;
+}
+
+std::vector<Bytes> observation_frames(const firmware::RtcmEpoch& epoch, int kind) {
+    std::vector<Constellation> systems;
+    for (const Constellation system : msm_systems_in_order)
+        if (firmware::has_msm_signals(epoch, system)) systems.push_back(system);
+    std::vector<Bytes> frames;
+    for (const Constellation system : systems)
+        std::ranges::move(firmware::msm_frames(epoch, msm_number(system, kind), system != systems.back()),
+                          std::back_inserter(frames));
+    return frames;
+}
 
 EpochWriter make_rtcm_writer(const OutputSettings& settings, const WriterSources& sources) {
     return [writer = std::make_shared<RtcmWriter>(settings, sources)](const EpochSeen& seen, const std::string&,

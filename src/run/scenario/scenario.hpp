@@ -240,12 +240,14 @@ struct CommandEntry {
     std::string told_at{};  ///< as that of a fault
 };
 
-/// A mount point of the run's caster: RTCM of a port of a receiver.
+/// A mount point of the run's caster: RTCM of a port of a receiver, or of virtual reference stations.
 struct CasterMount {
     std::string name;
-    std::size_t receiver = 0;  ///< by its place in the list
-    std::string port;          ///< the name of one of its board's; empty: the one that a wire without a name has
-    std::string told_at{};     ///< "FILE:LINE:COLUMN: KEY: ", for messages
+    std::size_t receiver = 0;      ///< by its place in the list
+    std::string port;              ///< the name of one of its board's; empty: the one that a wire without a name has
+    std::string told_at{};         ///< "FILE:LINE:COLUMN: KEY: ", for messages
+    bool virtual_station = false;  ///< each client has one of its own, beside the place that it tells
+    int msm = 7;                   ///< kind of its observations, 4 … 7
 };
 
 /// [caster]
@@ -253,6 +255,7 @@ struct CasterSettings {
     std::string listen;                          ///< "[HOST:]PORT"; empty: there is no caster
     std::map<std::string, std::string> users{};  ///< passwords by names; empty: everybody is served
     std::vector<CasterMount> mounts{};           ///< empty: one for each receiver that can send RTCM
+    std::optional<CasterMount> virtual_mount{};  ///< one more, with virtual stations
     std::string told_at = "--caster: ";          ///< of `listen`, as CasterMount::told_at
 };
 

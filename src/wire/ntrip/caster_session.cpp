@@ -102,9 +102,10 @@ private:
         const auto mount = core_.settings.mounts.find(request->mount);
         if (mount == core_.settings.mounts.end()) return refuse(ntrip_missing_answer(*request, core_.table()));
         if (!is_allowed(*request)) return refuse(ntrip_password_answer(*request));
-        if (core_.streaming.size() >= static_cast<std::size_t>(NtripCaster::most_clients))
-            return refuse(ntrip_refusal(503, "Service Unavailable", "too many clients"));
-        stream(*request, *mount->second);
+        const bool full = core_.streaming.size() >= static_cast<std::size_t>(NtripCaster::most_clients);
+        auto corrections = full ? nullptr : mount->second->open();
+        if (!corrections) return refuse(ntrip_refusal(503, "Service Unavailable", "too many clients"));
+        stream(*request, std::move(corrections));
     }
 
     // Who names a user that there is not waits as long as who names one.
@@ -143,9 +144,9 @@ private:
                                 });
     }
 
-    void stream(const NtripRequest& request, CorrectionsSource& source) {
+    void stream(const NtripRequest& request, std::unique_ptr<CorrectionsStream> corrections) {
         leave();
-        corrections_ = source.open();
+        corrections_ = std::move(corrections);
         chunked_ = request.chunked;
         core_.streaming.insert(this);
         ++core_.clients;

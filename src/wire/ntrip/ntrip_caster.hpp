@@ -30,7 +30,7 @@ public:
     virtual ~CorrectionsSource() = default;
     /// Its line of the source table, as of source_line(). @param needs_password clients must show one
     [[nodiscard]] virtual std::string table_line(bool needs_password) const = 0;
-    /// For a client that comes.
+    /// For a client that comes; null: there is no room for it now.
     [[nodiscard]] virtual std::unique_ptr<CorrectionsStream> open() = 0;
 };
 

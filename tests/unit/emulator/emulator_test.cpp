@@ -108,12 +108,12 @@ TEST(Emulator, AwaitsClientsWhereTimeNeverWaitsToo) {
     MemoryRun run = memory_run(emulator_scenario(at_noon("")), {0ns, std::nullopt, {false, std::nullopt}});
     int rests = 0;
     run.emulator->on_look([&](GpsTime now) {
+        if (rests == 3) return;
         EXPECT_EQ(now, run.start);
         if (++rests == 3) run.wire->set_line({true, std::nullopt});
     });
     run.emulator->await_clients(never_stop);
     EXPECT_EQ(rests, 3);
-    run.emulator->on_look({});
     run.emulator->run_until(run.start + 2s, never_stop);
     EXPECT_EQ(run.emulator->wires().at(0).link.counters().bytes_unheard, 0U);
     EXPECT_GT(run.emulator->wires().at(0).link.counters().bytes_out, 0U);

@@ -6,6 +6,7 @@
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "run/emulator/wires.hpp"
 #include "run/scenario/scenario_file.hpp"
+#include "support/run_parts.hpp"
 
 namespace skyloop {
 namespace {
@@ -146,6 +147,81 @@ TEST(Caster, IsReadFromAScenario) {
     EXPECT_EQ(scenario->caster.mounts[1].port, "uart2");
 }
 
+TEST(Caster, HasMountPointsOfVirtualStations) {
+    const auto scenario = read_scenario(
+        "[caster]\nlisten = \"1\"\n[[caster.mount]]\nname = \"VRS\"\nvirtual = true\nmsm = 4\n"
+        "[[caster.mount]]\nname = \"VRS7\"\nvirtual = true\n[[caster.mount]]\nname = \"BASE\"\n",
+        "test.toml");
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    const std::vector<CasterMount>& mounts = scenario->caster.mounts;
+    ASSERT_EQ(mounts.size(), 3U);
+    EXPECT_TRUE(mounts[0].virtual_station && mounts[1].virtual_station);
+    EXPECT_FALSE(mounts[2].virtual_station);
+    EXPECT_EQ(mounts[0].msm, 4);
+    EXPECT_EQ(mounts[1].msm, 7);
+}
+
+Scenario with_mount(const std::string& mount, const std::string& more = "") {
+    return read_scenario("[run]\nstart = 2024-03-05T12:00:00Z\n" + more +
+                             "[caster]\nlisten = \"127.0.0.1:0\"\n[[caster.mount]]\nname = \"A\"\n" + mount,
+                         "test.toml")
+        .value();
+}
+
+Result<Assembly> assembled_for_caster(const Scenario& scenario) {
+    RunMode mode;
+    mode.virtual_time = true;
+    mode.open_ports = false;
+    return assemble(scenario, test::emulator_data(), mode);
+}
+
+TEST(Caster, ServesVirtualStationsOfAnyBoard) {
+    const Scenario scenario = with_mount("virtual = true\n");
+    auto assembly = assembled_for_caster(scenario);
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    const CasterHost host{test::emulator_data(), "1.2"};
+    EXPECT_TRUE(RunCaster::check(scenario, *assembly, host));
+    const auto caster = RunCaster::start(scenario, *assembly, host);
+    ASSERT_TRUE(caster) << caster.error().message;
+    EXPECT_THAT(caster->description(), HasSubstr(" (A)"));
+}
+
+TEST(Caster, HasVirtualStationsBesideTheMountPointsOfItsReceivers) {
+    const auto scenario = [](const std::string& name) {
+        return read_scenario(
+                   "[run]\nstart = 2024-03-05T12:00:00Z\n[[receiver]]\nname = \"base\"\nboard = \"ublox-f9p\"\n"
+                   "[caster]\nlisten = \"127.0.0.1:0\"\nvirtual = \"" +
+                       name + "\"\n",
+                   "test.toml")
+            .value();
+    };
+    const CasterHost host{test::emulator_data(), "1.2"};
+    auto assembly = assembled_for_caster(scenario("VRS"));
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    const auto caster = RunCaster::start(scenario("VRS"), *assembly, host);
+    ASSERT_TRUE(caster) << caster.error().message;
+    EXPECT_THAT(caster->description(), HasSubstr(" (base, VRS)"));
+    const auto taken = RunCaster::check(scenario("base"), *assembly, host);
+    ASSERT_FALSE(taken);
+    EXPECT_THAT(taken.error().message, HasSubstr("caster.virtual: 'base' is the mount point of a receiver"));
+}
+
+TEST(Caster, RefusesWhatItsMountPointsCannotBe) {
+    for (const auto& [scenario, wanted] : {std::pair{with_mount("virtual = true\n", "[model]\nname = \"baseline\"\n"),
+                                                     "expected model.name = \"modern\""},
+                                           {with_mount("virtual = false\n"), "ublox-m8 sends no RTCM"}}) {
+        auto assembly = assembled_for_caster(scenario);
+        ASSERT_TRUE(assembly) << assembly.error().message;
+        const auto checked = RunCaster::check(scenario, *assembly, {});
+        const auto started = RunCaster::start(scenario, *assembly, {});
+        ASSERT_FALSE(checked);
+        ASSERT_FALSE(started);
+        EXPECT_EQ(checked.error().code, ErrorCode::usage);
+        EXPECT_EQ(checked.error().message, started.error().message);
+        EXPECT_THAT(checked.error().message, testing::AllOf(HasSubstr("test.toml:"), HasSubstr(wanted)));
+    }
+}
+
 TEST(Caster, IsRefusedWithItsPlace) {
     for (const auto& [text, wanted] :
          {std::pair{"[caster]\n", "listens nowhere"},
@@ -154,6 +230,11 @@ TEST(Caster, IsRefusedWithItsPlace) {
           {"[caster]\nlisten = \"1\"\n[[caster.mount]]\nname = \"a\"\nreceiver = \"x\"\n", "is no receiver of this"},
           {"[caster]\nlisten = \"1\"\n[[caster.mount]]\nname = \"a\"\n[[caster.mount]]\nname = \"a\"\n",
            "is the second"},
+          {"[caster]\nlisten = \"1\"\nvirtual = \"a\"\n[[caster.mount]]\nname = \"a\"\n", "is the second"},
+          {"[caster]\nlisten = \"1\"\nvirtual = \"\"\n", "expected letters, digits"},
+          {"[caster]\nlisten = \"1\"\n[[caster.mount]]\nname = \"a\"\nvirtual = true\nport = \"usb\"\n",
+           "port: is of a receiver"},
+          {"[caster]\nlisten = \"1\"\n[[caster.mount]]\nname = \"a\"\nmsm = 4\n", "msm: is of virtual stations"},
           {"[caster]\nlisten = \"1\"\n[caster.users]\n\"a:b\" = \"x\"\n", "is no name of a user"}}) {
         const auto scenario = read_scenario(text, "test.toml");
         ASSERT_FALSE(scenario) << text;

@@ -185,6 +185,18 @@ TEST(NtripCaster, HasRoomFor200) {
     EXPECT_TRUE(comes_true([&] { return bench.caster->counts().clients == 0; }));
 }
 
+TEST(NtripCaster, RefusesWhereAMountPointHasNoRoom) {
+    CasterBench bench;
+    bench.source->fill();
+    for (const int version : {1, 2}) {
+        RawClient client(*bench.caster);
+        client.say(get("BASE", version));
+        EXPECT_TRUE(client.hear_all().starts_with("HTTP/1.1 503 Service Unavailable\r\n"));
+    }
+    EXPECT_EQ(bench.caster->counts().refused, 2U);
+    EXPECT_EQ(bench.caster->counts().served, 0U);
+}
+
 TEST(NtripCaster, SaysWhereItCannotListen) {
     CasterBench first;
     NtripCasterSettings settings;

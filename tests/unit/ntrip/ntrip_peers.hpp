@@ -23,6 +23,10 @@ public:
         const std::lock_guard lock(mutex_);
         all_ += text;
     }
+    void fill() {
+        const std::lock_guard lock(mutex_);
+        full_ = true;
+    }
     std::vector<std::string> positions() const {
         const std::lock_guard lock(mutex_);
         return positions_;
@@ -36,6 +40,7 @@ public:
     }
     std::unique_ptr<CorrectionsStream> open() override {
         const std::lock_guard lock(mutex_);
+        if (full_) return nullptr;
         return std::make_unique<Stream>(shared_from_this(), all_.size());
     }
 
@@ -62,6 +67,7 @@ private:
     mutable std::mutex mutex_;
     std::string all_;
     std::vector<std::string> positions_;
+    bool full_ = false;
 };
 
 /// Looks until it is so, for 10 s.

@@ -93,7 +93,8 @@ TEST(Rtcm3, RefusesWhatIsNoFrame) {
 
 TEST(Rtcm3, StationsComeBack) {
     for (const auto& height : {std::optional<int>(), std::optional<int>(65535)}) {
-        const Rtcm3Station station{4095, {-(std::int64_t{1} << 37), (std::int64_t{1} << 37) - 1, -1}, height};
+        const Rtcm3Station station{
+            4095, {-(std::int64_t{1} << 37), (std::int64_t{1} << 37) - 1, -1}, height, height.has_value()};
         const Bytes frame = encode(station);
         const auto message = parse_rtcm3(frame);
         ASSERT_TRUE(message);

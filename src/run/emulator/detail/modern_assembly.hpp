@@ -11,6 +11,7 @@
 #include "base/core/result.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/scenario/scenario.hpp"
+#include "world/propagation/modern_effects.hpp"
 #include "world/propagation/named_ionosphere_maps.hpp"
 
 namespace skyloop::inline run {
@@ -36,6 +37,14 @@ struct WorldData {
     std::shared_ptr<GasLossTable> gas_losses;
 };
 
+/// From what the effects of the modern profile are made.
+struct ModernWorld {
+    ModernPropagationParameters parameters;
+    ModernContext context;
+};
+/// That of a scenario. Fails with `input` when the maps that it needs are missing.
+Result<ModernWorld> modern_world_of(const Scenario& scenario, const NavigationSource& navigation,
+                                    const WorldData& world);
 /// The effects of the modern profile, from a scenario's settings. Fails with `input` when a file they need is missing
 /// or does not fit the run.
 Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
