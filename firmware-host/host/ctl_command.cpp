@@ -154,6 +154,15 @@ std::string number_text(const Json& json, std::string_view format) {
     return json.is_number() ? fmt::format(fmt::runtime(format), json.get<double>()) : std::string("-");
 }
 
+std::string corrections_text(const Json& corrections) {
+    std::string text =
+        fmt::format("; corrections of base {}: {}, {} s old", corrections.at("station").get<int>(),
+                    corrections.at("solution").get<std::string>(), number_text(corrections.at("age_s"), "{:.1f}"));
+    if (const Json& baseline = corrections.at("baseline"); baseline.is_object())
+        text += fmt::format(", baseline {} m", number_text(baseline.at("length_m"), "{:.3f}"));
+    return text;
+}
+
 std::string receiver_text(const Json& receiver) {
     const Json& fix = receiver.at("fix");
     std::string text = fmt::format("{}: {}, {} satellites", receiver.at("name").get<std::string>(),
@@ -161,6 +170,7 @@ std::string receiver_text(const Json& receiver) {
     if (const Json& error = receiver.at("error"); error.is_object())
         text += fmt::format(", off by {} m east {} m north {} m up", number_text(error.at("east_m"), "{:+.1f}"),
                             number_text(error.at("north_m"), "{:+.1f}"), number_text(error.at("up_m"), "{:+.1f}"));
+    if (receiver.contains("corrections")) text += corrections_text(receiver.at("corrections"));
     for (const Json& wire : receiver.at("wires"))
         text += fmt::format("; {} {} {} B out {} B in {} lost", wire.at("port").get<std::string>(),
                             number_text(wire.at("baud"), "{:.0f}"), wire.at("bytes_out").get<std::uint64_t>(),

@@ -7,11 +7,19 @@ const patience = 30_000;
 // UBX-MON-VER, a poll: what every driver asks first.
 const versionPoll = Buffer.from([0xb5, 0x62, 0x0a, 0x04, 0, 0, 0x0e, 0x34]);
 
+const begun = new Set();
+
 export class LiveRun {
-    constructor(program, scenario) {
+    /** Ends all that have begun and not been ended. */
+    static async endAll() {
+        for (const run of begun) await run.end();
+    }
+
+    constructor(program, scenario, speed = 1) {
         this.log = "";
-        this.process = spawn(program, ["run", scenario, "--control", "0", "--port", "pty", "--speed", "1"],
+        this.process = spawn(program, ["run", scenario, "--control", "0", "--port", "pty", "--speed", String(speed)],
             { stdio: ["ignore", "ignore", "pipe"] });
+        begun.add(this);
         this.ended = new Promise((resolve) => this.process.once("exit", resolve));
         this.process.stderr.on("data", (text) => (this.log += text));
     }
@@ -19,7 +27,7 @@ export class LiveRun {
     /** Waits for its addresses, and takes the client's place. */
     async begin() {
         this.url = (await this.said(/^control: (\S+)$/m))[1];
-        this.connect((await this.said(/^port 0: (\S+) /m))[1]);
+        this.connect((await this.said(/^(?:\S+: )?port 0: (\S+) /m))[1]);
     }
 
     async said(pattern) {
@@ -49,6 +57,7 @@ export class LiveRun {
 
     /** Ends the program, kindly first. */
     async end() {
+        begun.delete(this);
         this.timers?.forEach(clearInterval);
         if (this.wire !== undefined) fs.closeSync(this.wire);
         if (this.process.exitCode === null) this.process.kill("SIGINT");

@@ -6,14 +6,13 @@ import fs from "node:fs";
 import { createRequire } from "node:module";
 import path from "node:path";
 import { LiveRun } from "./live_run.mjs";
+import { fixIs, keep, laptop, noOverflow, phone, pictures } from "./looks.mjs";
+import { correctionsAreShown, nothingOfCorrections } from "./rtk_steps.mjs";
 
 const skipped = 77;
-const whole = 285_000; // ms, all of it
+const whole = 385_000; // ms, all of it
 const here = import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname);
-const pictures = process.env.SKYLOOP_PICTURES;
 const chromium = process.env.SKYLOOP_CHROMIUM;
-const laptop = { width: 1440, height: 900 };
-const phone = { width: 390, height: 844 };
 
 function skip(why) {
     console.log(`page/live is skipped: ${why}`);
@@ -33,19 +32,6 @@ function browserControl() {
     const npm = spawnSync("npm", ["install", ...quiet], { cwd: folder, timeout: 90_000, encoding: "utf8" });
     if (npm.status !== 0) skip(`npm cannot install playwright-core ${wanted}: ${npm.stderr ?? npm.error}`);
     return load();
-}
-
-function keep(page, name, options = {}) {
-    return page.screenshot({ path: path.join(pictures, `${name}.png`), ...options });
-}
-
-async function fixIs(page, state) {
-    await page.locator(`#fix[data-state="${state}"]`).waitFor({ timeout: 60_000 });
-    return page.locator("#fix-word").innerText();
-}
-
-async function noOverflow(page, width) {
-    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, `wider than ${width} px`);
 }
 
 // What the run shows before anything is done to it.
@@ -344,6 +330,7 @@ async function test(browser, run) {
         request.url().startsWith(run.url) || request.url().startsWith("blob:") || mistakes.push(`foreign: ${request.url()}`));
     await page.goto(run.url);
     await everythingIsThere(page);
+    await nothingOfCorrections(page);
     await deviationIsTold(page);
     await historyTakesEpochsOnce(page);
     await historyJoinsStates(page);
@@ -360,6 +347,21 @@ async function test(browser, run) {
     await phoneFits(browser, run.url);
     assert.deepEqual(mistakes, []);
     await endIsTold(page, run);
+    await page.close();
+}
+
+// Another run, of a base and its rover, at five times the speed.
+async function testCorrections(browser) {
+    const run = new LiveRun(process.env.SKYLOOP, path.join(here, "rtk_page.toml"), 5);
+    try {
+        await run.begin();
+        await correctionsAreShown(browser, run.url);
+    } catch (error) {
+        console.error(`the program said: ${run.log}`);
+        throw error;
+    } finally {
+        await run.end();
+    }
 }
 
 if (!chromium || !fs.existsSync(chromium)) skip("there is no Chromium; apt-get install chromium");
@@ -370,7 +372,7 @@ let browser = null;
 const bound = setTimeout(async () => {
     console.error("page/live takes too long");
     await browser?.close();
-    await run.end();
+    await LiveRun.endAll();
     process.exit(1);
 }, whole);
 try {
@@ -381,6 +383,7 @@ try {
             "--disable-component-update", "--disable-sync"],
     });
     await test(browser, run);
+    await testCorrections(browser);
     console.log(`page/live: passed; pictures in ${pictures}`);
 } catch (error) {
     console.error(error);

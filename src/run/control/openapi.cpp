@@ -4,6 +4,7 @@
 #include "detail/control_json.hpp"
 #include "run/control/command_json.hpp"
 #include "run/control/control_request.hpp"
+#include "run/control/status_json.hpp"
 #include "run/fault/command.hpp"
 
 namespace skyloop::inline run {
@@ -30,6 +31,50 @@ Json answers(const Json& own) {
          {"101", "200", "202", "400", "401", "403", "404", "413", "415", "421", "422", "426", "429", "503"})
         if (all.contains(status)) sorted[status] = all[status];
     return sorted;
+}
+
+Json described(std::string_view type, std::string_view meaning) { return {{"type", type}, {"description", meaning}}; }
+
+Json described_or_null(std::string_view type, std::string_view meaning, Json more) {
+    Json schema{{"type", Json::array({type, "null"})}, {"description", meaning}};
+    schema.update(more);
+    return schema;
+}
+
+Json baseline_schema() {
+    Json vector{{"length_m", described("number", "metres")}};
+    for (const char* part : {"north_m", "east_m", "down_m"})
+        vector[part] = described("number", "metres, from the base to this antenna, along the base's own directions");
+    vector["base_moves"] = described("boolean", "the base of a moving pair");
+    vector["ratio"] = {{"type", {"number", "null"}},
+                       {"description", "of the ambiguity test; null where none was passed"}};
+    return described_or_null("object", "null while nothing of the base is in the solution", {{"properties", vector}});
+}
+
+Json corrections_schema() {
+    Json place;
+    for (const char* part : {"lat_deg", "lon_deg", "height_m"})
+        place[part] = {{"type", "number"}};
+    Json solution = described("string", "what of the corrections is in the reported solution");
+    solution["enum"] = correction_words;
+    return {
+        {"type", "object"},
+        {"description", "What the receiver has of a base; once corrections have come in"},
+        {"properties",
+         {{"solution", std::move(solution)},
+          {"age_s", described("number", "age of the base's data, seconds; grows on without new ones")},
+          {"station", described("integer", "number of the base, 0 to 4095")},
+          {"base", described_or_null("object", "where it says it stands, right or wrong; height above the ellipsoid",
+                                     {{"properties", std::move(place)}})},
+          {"baseline", baseline_schema()}}},
+        {"required", {"solution", "age_s", "station", "base", "baseline"}}};
+}
+
+// What is always there is not told here: it grows with the program.
+Json status_schema() {
+    const Json receiver{{"type", "object"},
+                        {"properties", {{"corrections", {{"$ref", "#/components/schemas/Corrections"}}}}}};
+    return {{"type", "object"}, {"properties", {{"receivers", {{"type", "array"}, {"items", receiver}}}}}};
 }
 
 Json reading(std::string_view summary, const Json& others = Json::object()) {
@@ -116,6 +161,8 @@ Json paths() {
     Json paths;
     const Json not_begun{{"503", error_answer("the run has not begun")}};
     paths["/api/status"] = reading("The last snapshot, at most a second old", not_begun);
+    paths["/api/status"]["get"]["responses"]["200"]["content"]["application/json"]["schema"] = {
+        {"$ref", "#/components/schemas/Status"}};
     paths["/api/timeline"] = reading("Faults and commands with their known times", not_begun);
     paths["/api/scene"] =
         reading("Roofs and trees around, from above", {{"404", error_answer("nothing stands around")}});
@@ -136,7 +183,12 @@ std::string openapi_json(std::string_view version) {
         {"type", "object"}, {"properties", {{"error", {{"type", "string"}}}}}, {"required", Json::array({"error"})}};
     Json json{{"openapi", "3.1.0"}, {"info", {{"title", "skyloop control"}, {"version", version}}}};
     json["paths"] = paths();
-    json["components"] = {{"schemas", {{"Error", error}, {"Command", commands_schema()}, {"Fault", faults_schema()}}},
+    json["components"] = {{"schemas",
+                           {{"Error", error},
+                            {"Command", commands_schema()},
+                            {"Fault", faults_schema()},
+                            {"Status", status_schema()},
+                            {"Corrections", corrections_schema()}}},
                           {"securitySchemes", {{"bearer", {{"type", "http"}, {"scheme", "bearer"}}}}}};
     json["security"] = Json::array({{{"bearer", Json::array()}}, Json::object()});
     return json_text(json);

@@ -93,22 +93,41 @@ Json error_json(const EnuError& error) {
     return {{"east_m", error.east.value()}, {"north_m", error.north.value()}, {"up_m", error.up.value()}};
 }
 
+Json baseline_json(const RelativePosition& vector) {
+    return {{"length_m", std::hypot(vector.north_m, vector.east_m, vector.down_m)},
+            {"north_m", vector.north_m},
+            {"east_m", vector.east_m},
+            {"down_m", vector.down_m},
+            {"base_moves", vector.base_moves},
+            {"ratio", vector.ratio > 0 ? Json(vector.ratio) : Json(nullptr)}};
+}
+
+Json corrections_json(const CorrectionsStatus& corrections) {
+    return {{"solution", correction_words.at(static_cast<std::size_t>(corrections.solution))},
+            {"age_s", corrections.age.value()},
+            {"station", corrections.station},
+            {"base", or_null(corrections.base, place_json)},
+            {"baseline", or_null(corrections.baseline, baseline_json)}};
+}
+
 Json receiver_json(const ReceiverStatus& receiver, GpsTime start) {
-    return {{"name", receiver.name},
-            {"board", receiver.board},
-            {"rate_hz", receiver.rate_hz},
-            {"epochs", receiver.epochs},
-            {"epoch_s", difference(receiver.epoch, start).value()},
-            {"truth", place_json(receiver.truth)},
-            {"true_speed_mps", receiver.true_speed.value()},
-            {"fix", fix_json(receiver)},
-            {"error", or_null(receiver.error, error_json)},
-            {"jamming_state", receiver.jamming_state},
-            {"spoofing", receiver.spoofing},
-            {"interference_db", receiver.interference.value()},
-            {"lateness_ms", static_cast<double>(receiver.lateness.count()) * 1e-6},
-            {"satellites", json_list(receiver.satellites, satellite_json)},
-            {"wires", json_list(receiver.wires, wire_json)}};
+    Json json{{"name", receiver.name},
+              {"board", receiver.board},
+              {"rate_hz", receiver.rate_hz},
+              {"epochs", receiver.epochs},
+              {"epoch_s", difference(receiver.epoch, start).value()},
+              {"truth", place_json(receiver.truth)},
+              {"true_speed_mps", receiver.true_speed.value()},
+              {"fix", fix_json(receiver)},
+              {"error", or_null(receiver.error, error_json)},
+              {"jamming_state", receiver.jamming_state},
+              {"spoofing", receiver.spoofing},
+              {"interference_db", receiver.interference.value()},
+              {"lateness_ms", static_cast<double>(receiver.lateness.count()) * 1e-6},
+              {"satellites", json_list(receiver.satellites, satellite_json)},
+              {"wires", json_list(receiver.wires, wire_json)}};
+    if (receiver.corrections) json["corrections"] = corrections_json(*receiver.corrections);
+    return json;
 }
 
 Json bar_json(const TimelineBar& bar, GpsTime start) {

@@ -1,8 +1,10 @@
 /// Snapshots as JSON, for pages and programs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "run/emulator/status_snapshot.hpp"
 #include "world/scene/urban_scene.hpp"
@@ -14,9 +16,12 @@ struct SeenLines {
     std::uint64_t dialogue = 0, events = 0;  ///< the last sequence numbers that are known
 };
 
+/// Kinds of solution by corrections, as `corrections.solution` of a receiver has them, in the order of CorrectionState.
+inline constexpr std::array<std::string_view, 4> correction_words{"none", "differential", "float", "fixed"};
+
 /// The snapshot as one JSON object without line end. Angles are in degrees, lengths in metres, times of GPS as
 /// "time_utc", as "gps_week" (not reduced modulo 1024) with "gps_tow_s", and as seconds since the start; what is not
-/// known is null.
+/// known is null. A receiver has "corrections" once such have come in.
 std::string status_json(const StatusSnapshot& snapshot, const SeenLines& seen = {});
 
 /// The last lines of a snapshot.

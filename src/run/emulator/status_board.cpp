@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/geo/geodetic.hpp"
+#include "firmware/core/told_baseline.hpp"
 #include "run/emulator/timing.hpp"
 
 namespace skyloop::inline run {
@@ -26,6 +28,22 @@ void keep_last(std::deque<std::shared_ptr<const Line>>& lines, Line line, std::s
 template <class Message>
 auto message_key(const Message& message) {
     return std::tie(message.receiver, message.wire, message.from_client, message.kind, message.name);
+}
+
+// Of a pair in one run no messages come; its vector tells the base.
+std::optional<CorrectionsStatus> corrections_of(const firmware::NavigationState& reported) {
+    const firmware::CorrectionStatus& told = reported.corrections;
+    const auto baseline = firmware::told_baseline(reported);
+    if (!told.age && !baseline) return std::nullopt;
+    CorrectionsStatus status;
+    if (baseline) {
+        status.solution = baseline->solution;
+        status.baseline = baseline->vector;
+    }
+    status.age = told.age ? *told.age : baseline->vector.age;
+    status.station = told.station ? *told.station : baseline ? baseline->vector.base_station : 0;
+    if (told.base) status.base = to_geodetic(*told.base);
+    return status;
 }
 
 }  // namespace
@@ -78,6 +96,7 @@ void StatusBoard::take_epoch(const EpochSeen& seen, bool silent, ReceiverStatus&
     status.fix_ok = false;
     status.satellites_used = 0;
     status.error.reset();
+    status.corrections.reset();
 }
 
 void StatusBoard::take_report(const EpochSeen& seen, ReceiverStatus& status) const {
@@ -89,6 +108,7 @@ void StatusBoard::take_report(const EpochSeen& seen, ReceiverStatus& status) con
     status.satellites_used = fix.satellites_used();
     status.error.reset();
     if (fix.has_position()) status.error = enu_error(seen.trace.truth, fix);
+    status.corrections = corrections_of(seen.reported);
     status.jamming_state = seen.reported.monitors.told_jamming_state();
     status.spoofing = static_cast<int>(seen.reported.monitors.spoofing);
 }

@@ -14,7 +14,9 @@
 #include "base/time/gps_time.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "run/fault/run_observer.hpp"
+#include "world/flow/epoch.hpp"
 #include "world/flow/fix.hpp"
+#include "world/flow/reference_station.hpp"
 #include "world/gnss/signal.hpp"
 
 namespace skyloop::inline run {
@@ -33,6 +35,15 @@ struct WireStatus {
     bool trusted = false;                                       ///< … it would navigate by this receiver
 };
 
+/// What a receiver has of a base station, or of the base antenna of a moving pair, as it tells it.
+struct CorrectionsStatus {
+    CorrectionState solution = CorrectionState::none;  ///< what of them is in its solution
+    Seconds age{0};                                    ///< of the base's data
+    int station = 0;                                   ///< number of the base, 0 … 4095
+    std::optional<Geodetic> base;                      ///< where it says it stands, right or wrong; nothing: not told
+    std::optional<RelativePosition> baseline;          ///< from the base; nothing while none of it is in the solution
+};
+
 /// One receiver at its last epoch that was looked at.
 struct ReceiverStatus {
     std::string name, board;
@@ -44,6 +55,8 @@ struct ReceiverStatus {
     Fix fix;                        ///< as last reported, none after silent_after; its satellites are left out
     bool fix_ok = false;            ///< within the user's limits (gnssFixOK)
     std::optional<EnuError> error;  ///< reported − true, while there is a position
+    /// Nothing before corrections have come in, and none of a receiver that has fallen silent.
+    std::optional<CorrectionsStatus> corrections;
     int satellites_used = 0;
     int jamming_state = 0;  ///< 0 unknown, 1 ok, 2 warning, 3 critical
     int spoofing = 0;       ///< as NAV-STATUS spoofDetState

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "run/control/status_json.hpp"
 #include "snapshots.hpp"
 
 namespace skyloop::test {
@@ -294,6 +295,31 @@ TEST(ControlRequest, DescribesEveryAnswer) {
             expect_described({method, target, {{"Host", "localhost"}, json}, {}});
         }
     EXPECT_TRUE(paths["/api/stream"]["get"]["responses"].contains("101"));
+}
+
+// The members that the status has, and no others.
+TEST(ControlRequest, DescribesTheCorrectionsOfTheStatus) {
+    StatusSnapshot snapshot = small_snapshot();
+    CorrectionsStatus& corrections = snapshot.receivers[0].corrections.emplace();
+    corrections.base.emplace();
+    corrections.baseline.emplace();
+    const auto told = nlohmann::json::parse(status_json(snapshot))["receivers"][0]["corrections"];
+    const auto json = nlohmann::json::parse(openapi_json("1.2.3"));
+    const auto& schemas = json["components"]["schemas"];
+    const auto& answer = json["paths"]["/api/status"]["get"]["responses"]["200"]["content"]["application/json"];
+    EXPECT_EQ(answer["schema"]["$ref"], "#/components/schemas/Status");
+    const auto& receiver = schemas["Status"]["properties"]["receivers"]["items"];
+    EXPECT_EQ(receiver["properties"]["corrections"]["$ref"], "#/components/schemas/Corrections");
+    const auto expect_same_members = [](const auto& schema, const auto& value) {
+        EXPECT_EQ(schema["properties"].size(), value.size());
+        for (const auto& [name, member] : value.items())
+            EXPECT_TRUE(schema["properties"].contains(name)) << name;
+    };
+    expect_same_members(schemas["Corrections"], told);
+    for (const char* part : {"base", "baseline"})
+        expect_same_members(schemas["Corrections"]["properties"][part], told[part]);
+    EXPECT_EQ(schemas["Corrections"]["required"].size(), told.size());
+    EXPECT_EQ(schemas["Corrections"]["properties"]["solution"]["enum"].size(), correction_words.size());
 }
 
 TEST(ControlRequest, DescribesItselfByTheSameTables) {

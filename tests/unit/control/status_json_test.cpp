@@ -33,6 +33,43 @@ TEST(StatusJson, TellsTimesPlacesSatellitesAndWires) {
     EXPECT_EQ(json["events"][0]["seq"], 3);
 }
 
+TEST(StatusJson, TellsOfCorrectionsWhereSomeHaveCome) {
+    StatusSnapshot snapshot = small_snapshot();
+    EXPECT_FALSE(nlohmann::json::parse(status_json(snapshot))["receivers"][0].contains("corrections"));
+    CorrectionsStatus& corrections = snapshot.receivers[0].corrections.emplace();
+    corrections.age = Seconds(1.5);
+    corrections.station = 1234;
+    const auto told = [&snapshot] {
+        return nlohmann::json::parse(status_json(snapshot))["receivers"][0]["corrections"];
+    };
+    EXPECT_EQ(told(),
+              nlohmann::json(
+                  {{"solution", "none"}, {"age_s", 1.5}, {"station", 1234}, {"base", nullptr}, {"baseline", nullptr}}));
+    corrections.solution = CorrectionState::rtk_fixed;
+    corrections.base = Geodetic::degrees(47, 11, 503);
+    RelativePosition& vector = corrections.baseline.emplace();
+    vector.north_m = 3;
+    vector.east_m = 4;
+    vector.down_m = -12;
+    vector.base_moves = false;
+    vector.ratio = 8;
+    EXPECT_EQ(told()["solution"], "fixed");
+    EXPECT_NEAR(told()["base"]["lat_deg"].get<double>(), 47, 1e-12);
+    EXPECT_NEAR(told()["base"]["height_m"].get<double>(), 503, 1e-9);
+    EXPECT_EQ(told()["baseline"], nlohmann::json({{"length_m", 13.0},
+                                                  {"north_m", 3.0},
+                                                  {"east_m", 4.0},
+                                                  {"down_m", -12.0},
+                                                  {"base_moves", false},
+                                                  {"ratio", 8.0}}));
+    corrections.solution = CorrectionState::rtk_float;
+    vector.ratio = 0;
+    EXPECT_EQ(told()["solution"], "float");
+    EXPECT_TRUE(told()["baseline"]["ratio"].is_null());
+    corrections.solution = CorrectionState::differential;
+    EXPECT_EQ(told()["solution"], "differential");
+}
+
 TEST(StatusJson, TellsEachLineOnce) {
     const StatusSnapshot snapshot = small_snapshot();
     EXPECT_EQ(nlohmann::json::parse(status_json(snapshot))["dialogue"].size(), 100U);

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "base/geo/local_frame.hpp"
+
 namespace skyloop::test {
 namespace {
 
@@ -23,7 +25,9 @@ struct BoardRig {
         made.strength = [this](std::string_view, int, GpsTime) { return strength; };
         return made;
     }
-    void epoch(int index, bool reported_by_it = true) {
+    void epoch(int index, bool reported_by_it = true) { epoch(index, reported_by_it, {}, {}); }
+    void epoch(int index, bool reported_by_it, const firmware::CorrectionStatus& corrections,
+               const std::optional<RelativePosition>& vector) {
         Trace trace;
         trace.truth.geodetic = Geodetic::degrees(48, 11, 500);
         trace.sky.satellites.resize(1);
@@ -40,6 +44,8 @@ struct BoardRig {
         status.cn0 = DbHz(41);
         status.used = true;
         reported.epoch.fix.satellites = {status};
+        reported.epoch.relative = vector;
+        reported.corrections = corrections;
         const GpsTime now = board_start + std::chrono::milliseconds(100 * index);
         board.on_epoch({now, 0, trace, reported, Nanoseconds(5), reported_by_it ? std::optional(now) : std::nullopt});
     }
@@ -74,6 +80,80 @@ TEST(StatusBoard, ShowsNoFixOfAReceiverThatHasFallenSilent) {
         EXPECT_EQ(receiver.error.has_value(), type == FixType::fix_3d);
         EXPECT_EQ(receiver.epoch, board_start + std::chrono::milliseconds(100 * index));
     }
+}
+
+// A kilometre north of the tests' receiver.
+Position<Ecef> told_base() { return LocalFrame(Geodetic::degrees(48, 11, 503)).to_ecef(Position<Enu>{0, 1000, 0}); }
+
+TEST(StatusBoard, ShowsNoCorrectionsBeforeSomeHaveCome) {
+    BoardRig rig;
+    rig.epoch(1);
+    EXPECT_FALSE(rig.board.latest()->receivers[0].corrections);
+}
+
+TEST(StatusBoard, ShowsTheVectorThatWasSolved) {
+    BoardRig rig;
+    RelativePosition vector;
+    vector.north_m = -999;
+    vector.base_station = 7;
+    vector.ratio = 12.5;
+    rig.epoch(1, true, {CorrectionState::rtk_fixed, Seconds(1.5), 7, told_base(), true}, vector);
+    const auto& corrections = rig.board.latest()->receivers[0].corrections;
+    ASSERT_TRUE(corrections);
+    EXPECT_EQ(corrections->solution, CorrectionState::rtk_fixed);
+    EXPECT_EQ(corrections->age, Seconds(1.5));
+    EXPECT_EQ(corrections->station, 7);
+    ASSERT_TRUE(corrections->base);
+    EXPECT_NEAR(corrections->base->latitude.deg(), 48.00899, 1e-5);
+    ASSERT_TRUE(corrections->baseline);
+    EXPECT_EQ(corrections->baseline->north_m, -999);
+    EXPECT_EQ(corrections->baseline->ratio, 12.5);
+}
+
+TEST(StatusBoard, ShowsTheWayFromTheBaseOfASolutionByCodes) {
+    BoardRig rig;
+    rig.epoch(1, true, {CorrectionState::differential, Seconds(2), 7, told_base(), true}, {});
+    const auto& corrections = rig.board.latest()->receivers[0].corrections;
+    ASSERT_TRUE(corrections);
+    EXPECT_EQ(corrections->solution, CorrectionState::differential);
+    ASSERT_TRUE(corrections->baseline);
+    EXPECT_NEAR(corrections->baseline->north_m, -1000, 0.01);
+    EXPECT_EQ(corrections->baseline->ratio, 0);
+}
+
+TEST(StatusBoard, ShowsThatCorrectionsAreOfNoUse) {
+    BoardRig rig;
+    rig.epoch(1, true, {CorrectionState::none, Seconds(90), 7, told_base(), false}, {});
+    const auto& corrections = rig.board.latest()->receivers[0].corrections;
+    ASSERT_TRUE(corrections);
+    EXPECT_EQ(corrections->solution, CorrectionState::none);
+    EXPECT_EQ(corrections->age, Seconds(90));
+    EXPECT_TRUE(corrections->base);
+    EXPECT_FALSE(corrections->baseline);
+}
+
+TEST(StatusBoard, ShowsTheVectorOfAPairThatNeedsNoMessages) {
+    BoardRig rig;
+    RelativePosition vector;
+    vector.fixed = false;
+    vector.base_station = 3;
+    vector.age = Seconds(0.2);
+    rig.epoch(1, true, {}, vector);
+    const auto& corrections = rig.board.latest()->receivers[0].corrections;
+    ASSERT_TRUE(corrections);
+    EXPECT_EQ(corrections->solution, CorrectionState::rtk_float);
+    EXPECT_EQ(corrections->age, Seconds(0.2));
+    EXPECT_EQ(corrections->station, 3);
+    EXPECT_FALSE(corrections->base);
+    EXPECT_TRUE(corrections->baseline->base_moves);
+}
+
+TEST(StatusBoard, ShowsNoCorrectionsOfAReceiverThatHasFallenSilent) {
+    BoardRig rig({}, true);
+    rig.epoch(0, true, {CorrectionState::rtk_fixed, Seconds(1), 7, told_base(), true}, {});
+    rig.epoch(20, false);
+    rig.board.publish_now(board_start);
+    EXPECT_FALSE(rig.board.latest()->receivers[0].corrections);
 }
 
 TEST(StatusBoard, PublishesOnceASecondAndTenTimesWhileWatched) {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/geo/local_frame.hpp"
 #include "firmware/core/base_station.hpp"
 #include "firmware/core/geofence.hpp"
 #include "firmware/core/solution_covariance.hpp"
+#include "firmware/core/told_baseline.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
@@ -92,44 +92,21 @@ NavOdo odometer(const ReportContext& context) {
     return m;
 }
 
-// From a base to this antenna, and how: 0 by code, 1 with floating ambiguities, 2 with fixed ones.
-struct Baseline {
-    RelativePosition vector;
-    std::uint32_t carrier = 0;
-};
-
-// The vector of a pair of receivers, or that from the station of the corrections, where it has said where it stands.
-std::optional<Baseline> baseline_of(const NavigationState& state) {
-    const Fix& fix = state.epoch.fix;
-    if (!fix.has_position()) return std::nullopt;
-    if (const auto& pair = state.epoch.relative) return Baseline{*pair, pair->fixed ? 2u : 1u};
-    const CorrectionStatus& corrections = state.corrections;
-    if (corrections.state == CorrectionState::none || !corrections.base) return std::nullopt;
-    const LocalFrame base(to_geodetic(*corrections.base));
-    const Eigen::Vector3d to_rover = base.to_enu(to_ecef(fix.position)).vector();
-    Baseline baseline;
-    baseline.carrier = fix.type == FixType::rtk_fixed ? 2 : fix.type == FixType::rtk_float ? 1 : 0;
-    baseline.vector = {.north_m = to_rover.y(),
-                       .east_m = to_rover.x(),
-                       .down_m = -to_rover.z(),
-                       .deviation = fix.horizontal_accuracy / std::numbers::sqrt2,
-                       .base_moves = false,
-                       .fixed = baseline.carrier == 2,
-                       .base_station = corrections.station.value_or(0),
-                       .down_deviation = fix.vertical_accuracy};
-    return baseline;
+// 0 by code, 1 with floating ambiguities, 2 with fixed ones.
+std::uint32_t vector_carrier(CorrectionState solution) {
+    return solution == CorrectionState::rtk_fixed ? 2 : solution == CorrectionState::rtk_float ? 1 : 0;
 }
 
 // Bits: 0 fix ok, 1 differential, 2 vector valid, 3-4 carrier solution, 5 moving base.
-std::uint32_t relative_flags(const NavigationState& state, const std::optional<Baseline>& baseline) {
+std::uint32_t relative_flags(const NavigationState& state, const std::optional<ToldBaseline>& baseline) {
     std::uint32_t flags = state.fix_ok ? 1u : 0u;
     if (!baseline) return flags;
     flags |= is_differential(state.epoch.fix) ? 2u : 0u;
-    flags |= 4u | baseline->carrier << 3 | (baseline->vector.base_moves ? 0x20u : 0u);
+    flags |= 4u | vector_carrier(baseline->solution) << 3 | (baseline->vector.base_moves ? 0x20u : 0u);
     return flags;
 }
 
-NavRelposned0 relative_position_m8(const ReportContext& context, const std::optional<Baseline>& baseline) {
+NavRelposned0 relative_position_m8(const ReportContext& context, const std::optional<ToldBaseline>& baseline) {
     auto m = stamped<NavRelposned0>(context);
     m.flags = relative_flags(context.state, baseline);
     if (!baseline) return m;
@@ -150,7 +127,7 @@ double length_deviation(const RelativePosition& r, double length) {
 }
 
 NavRelposned relative_position(const ReportContext& context) {
-    const std::optional<Baseline> baseline = baseline_of(context.state);
+    const std::optional<ToldBaseline> baseline = told_baseline(context.state);
     const NavRelposned0 parts = relative_position_m8(context, baseline);
     NavRelposned m;
     m.ref_station_id = parts.ref_station_id;
@@ -257,7 +234,7 @@ NavPl protection_level(const ReportContext& context) {
 
 std::vector<Bytes> relative_position_by_generation(const ReportContext& context) {
     return context.board.identity.generation <= 8
-               ? ubx_frames_of(relative_position_m8(context, baseline_of(context.state)))
+               ? ubx_frames_of(relative_position_m8(context, told_baseline(context.state)))
                : ubx_frames_of(relative_position(context));
 }
 

@@ -1,8 +1,10 @@
 // What the page has seen since it was opened: the stream tells of the moment alone.
 
+import { solutionKind } from "./solutions.js";
+
 const mostSamples = 12_000;
-const mostStretches = 2000; // of a satellite
-const longestGap = 2; // s between snapshots of one stretch
+const mostStretches = 2000; // of a satellite, and of solutions
+const longestGap = 2; // s of real time between snapshots of one stretch
 const earthRadius = 6378137; // WGS 84, semi-major axis, m
 const eccentricitySquared = 6.69437999014e-3; // WGS 84
 
@@ -29,7 +31,20 @@ export function unflat(point, origin) {
     };
 }
 
-/** Samples of one receiver, in ascending time; of each satellite the stretches {from, to, state, used}. */
+// What goes on is the last stretch, longer; what is new or comes after a gap is another one.
+function extend(stretches, { time, gap }, what) {
+    const last = stretches.at(-1);
+    const goesOn = last && time - last.to <= gap;
+    if (goesOn) last.to = time;
+    if (goesOn && Object.entries(what).every(([name, value]) => last[name] === value)) return;
+    stretches.push({ from: time, to: time, ...what });
+    if (stretches.length > mostStretches) stretches.shift();
+}
+
+/**
+ * Samples of one receiver, in ascending time; of each satellite the stretches {from, to, state, used}, and those of the
+ * kinds of solution {from, to, kind}.
+ */
 export class History {
     constructor() {
         this.clear();
@@ -38,13 +53,19 @@ export class History {
     clear() {
         this.samples = [];
         this.states = new Map();
+        this.solutions = [];
+        this.corrected = false; // corrections have come in
     }
 
-    add(time, receiver) {
+    /** @param speed s of the run in one of real time */
+    add(time, receiver, speed = 1) {
         const last = this.samples.at(-1);
         if (last && time < last.time) this.clear(); // the program has begun anew
         if (last && time === last.time) return;
-        for (const satellite of receiver.satellites) this.addState(time, satellite);
+        const moment = { time, gap: longestGap * Math.max(speed, 1) };
+        for (const satellite of receiver.satellites) this.addState(moment, satellite);
+        extend(this.solutions, moment, { kind: solutionKind(receiver.fix.type) });
+        this.corrected ||= Boolean(receiver.corrections);
         const error = receiver.error;
         this.samples.push({
             time,
@@ -61,15 +82,9 @@ export class History {
         if (this.samples.length > mostSamples) this.thin();
     }
 
-    addState(time, { id, state, used }) {
+    addState(moment, { id, state, used }) {
         if (!this.states.has(id)) this.states.set(id, []);
-        const stretches = this.states.get(id);
-        const last = stretches.at(-1);
-        const goesOn = last && time - last.to <= longestGap;
-        if (goesOn) last.to = time;
-        if (goesOn && last.state === state && last.used === used) return;
-        stretches.push({ from: time, to: time, state, used });
-        if (stretches.length > mostStretches) stretches.shift();
+        extend(this.states.get(id), moment, { state, used });
     }
 
     /** Samples with a position from a time on, one of each epoch: snapshots may come faster than those. */

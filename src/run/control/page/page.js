@@ -13,7 +13,7 @@ import { setUpKeys } from "./keyboard.js";
 import { setUpMessages } from "./messages.js";
 import { Pace } from "./pace.js";
 import { setUpSkyPlot } from "./sky_plot.js";
-import { fixState, showState } from "./state.js";
+import { fixState, showCorrections, showState } from "./state.js";
 import { StatePlot } from "./states.js";
 import { Timeline } from "./timeline.js";
 import { TrackMap } from "./track.js";
@@ -69,11 +69,13 @@ function historyOf(name) {
 }
 
 function showReceiver(status) {
-    for (const receiver of status.receivers) historyOf(receiver.name).add(status.elapsed_s, receiver);
+    for (const receiver of status.receivers) historyOf(receiver.name).add(status.elapsed_s, receiver, status.speed);
     const receiver = status.receivers[chosen];
     if (!receiver || receiver.epochs === 0) return;
     current = receiver;
     showState(receiver);
+    showCorrections(receiver);
+    mark(document.body, "corrections", historyOf(receiver.name).corrected);
     say(byId("board"), receiver.board);
     document.title = `${byId("fix-word").textContent} – skyloop`;
     mark(document.body, "fix", fixState(receiver));

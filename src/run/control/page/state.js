@@ -1,6 +1,6 @@
 // How the receiver is, to be read from some metres away: the fix, its error, interference, lateness.
 import { byId, mark, say } from "./dom.js";
-import { figures, metres } from "./format.js";
+import { clock, figures, metres } from "./format.js";
 
 const fixWords = {
     none: "NO FIX", dead_reckoning: "DR ONLY", "2d": "2D FIX", "3d": "3D FIX", dgnss: "DGNSS FIX",
@@ -10,6 +10,10 @@ const fixWords = {
 // As UBX-NAV-STATUS, spoofDetState, and UBX-MON-RF, jammingState, have them.
 const spoofingWords = ["unknown", "none", "indicated", "multiple"];
 const jammingWords = ["unknown", "none", "warning", "critical"];
+
+// What of the corrections is in the solution.
+const solutionWords = { none: "not used", differential: "DGNSS", float: "RTK float", fixed: "RTK fixed" };
+const mostRatio = 1000; // that is told
 
 const lateEnough = 20; // ms after which an epoch is late
 
@@ -25,9 +29,30 @@ function ownView(claimed, name, dilution) {
     return dilution === undefined ? claim : `${claim}, ${name}\u00a0${figures(dilution, 2)}`;
 }
 
+function age(seconds) {
+    return seconds < 100 ? `${seconds.toFixed(1)} s` : clock(seconds);
+}
+
+function millimetres(value) {
+    return value.toFixed(3).replace(/^-(?=0\.0*$)/, "").replace("-", "−");
+}
+
 function card(id, text, state = "") {
     say(byId(`${id}-value`), text);
     mark(byId(id), "state", state);
+}
+
+/** What the receiver tells of a base station; "–" for what it does not. */
+export function showCorrections({ corrections }) {
+    const baseline = corrections?.baseline;
+    mark(byId("corrections"), "state", corrections?.solution === "none" ? "warn" : "");
+    const tell = (name, text) => say(byId(`corrections-${name}`), text ?? "–");
+    tell("solution", solutionWords[corrections?.solution]);
+    tell("age", corrections && age(corrections.age_s));
+    tell("base", corrections && String(corrections.station));
+    tell("length", baseline && metres(baseline.length_m));
+    tell("vector", baseline && `${[baseline.north_m, baseline.east_m, baseline.down_m].map(millimetres).join(", ")} m`);
+    tell("ratio", baseline?.ratio && (baseline.ratio < mostRatio ? figures(baseline.ratio) : `>${mostRatio}`));
 }
 
 /** "fix", "poor" (a position out of the receiver's own limits, or extrapolated) or "nofix". */
@@ -41,7 +66,9 @@ export function showState(receiver) {
     const { fix, error } = receiver;
     const state = fixState(receiver);
     mark(byId("fix"), "state", state);
-    say(byId("fix-word"), fixWords[fix.type] ?? fix.type.toUpperCase());
+    const word = fixWords[fix.type] ?? fix.type.toUpperCase();
+    say(byId("fix-word"), word);
+    mark(byId("fix-word"), "long", word.length > 6);
     const inView = receiver.satellites.length;
     const extrapolated = fix.type === "dead_reckoning" ? "dead reckoning; " : "";
     const told = extrapolated || (state === "poor" ? "not within the receiver's limits; " : "");

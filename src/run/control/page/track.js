@@ -1,5 +1,6 @@
 // The map: truth and fixes over a metric grid, with what stands around.
 import { colour } from "./appearance.js";
+import { drawBase } from "./base_mark.js";
 import { context, once, polyline } from "./canvas.js";
 import { byId, say } from "./dom.js";
 import { metres, roundMetres, roundStep } from "./format.js";
@@ -9,6 +10,7 @@ const closest = 0.02; // m of ground a pixel
 const widest = 5000;
 const zoomStep = 1.5;
 const mostPoints = 3000;
+const handling = "Arrow keys move the map, + and − zoom.";
 
 export class TrackMap {
     /** @param onPlace called with a place that was pointed at in "move" mode */
@@ -156,7 +158,17 @@ export class TrackMap {
         pen.lineWidth = 2;
         pen.strokeStyle = colour("fix");
         polyline(pen, fixes.map((p) => p && at(p)));
+        this.drawBase(pen, { at, width, height });
         this.drawMarks(pen, at);
+    }
+
+    drawBase(pen, view) {
+        const { corrections, fix, truth } = this.receiver;
+        const told = corrections?.base
+            ? drawBase(pen, {
+                ...view, corrections, place: flat(corrections.base, this.origin), rover: flat(fix.place ?? truth, this.origin),
+            }) : "";
+        this.canvas.setAttribute("aria-label", `Track, truth against fix. ${told ? `The ${told}. ` : ""}${handling}`);
     }
 
     drawScene(pen, at) {
