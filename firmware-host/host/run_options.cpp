@@ -191,7 +191,7 @@ void add_place_options(CLI::App& command, RunOptions& options) {
                        "Stand still there: LAT,LON[,HEIGHT] in degrees and metres above the ellipsoid");
     command
         .add_option("--nav", options.nav,
-                    "RINEX navigation file or almanac; repeatable; without it a nominal constellation")
+                    "RINEX navigation file or almanac; repeatable; without it a nominal sky")
         ->allow_extra_args(false);
     options.keys.add_flag(command, "--rebase-nav", "sky.rebase_navigation", "true",
                           "Move the navigation data to the start time, keeping its time of day");

@@ -93,7 +93,7 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
 /// @param scene digest of the files of the scene; 0: there are none
 std::string scenario_digest(const Scenario& scenario, const DataFolders& data, GpsTime start, std::uint64_t scene = 0);
 
-/// Broadcast orbits for a scenario: its files, or the nominal constellation, and when its run begins. Without a start
+/// Broadcast orbits for a scenario: its files, or the nominal sky, and when its run begins. Without a start
 /// of its own a run with files begins when four satellites that its receivers solve with first have orbits. Fails with
 /// `input` for files that hold nothing to use, with `usage` for settings that contradict each other.
 /// @param now the wall clock, GPST

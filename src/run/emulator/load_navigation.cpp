@@ -13,6 +13,7 @@
 #include "run/scenario/board_files.hpp"
 #include "world/gnss/foreign_records.hpp"
 #include "world/gnss/navigation_data.hpp"
+#include "world/gnss/nominal_sky.hpp"
 #include "world/rinex/almanac_file.hpp"
 #include "world/rinex/navigation_file.hpp"
 
@@ -193,17 +194,18 @@ GpsTime start_of(const Scenario& scenario, const NavigationData& data, const Dat
     return first_solvable(data, solving_constellations(scenario, folders)).value_or(now);
 }
 
+// The article's sky is GPS alone, and its nominal one has no others.
+std::vector<Constellation> nominal_constellations(const Scenario& scenario) {
+    if (scenario.sky.constellations.empty() && scenario.model.sensor_model) return {Constellation::gps};
+    return wanted_constellations(scenario);
+}
+
 Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now) {
-    const auto& wanted = scenario.sky.constellations;
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), Constellation::gps) == wanted.end())
-        return fail(ErrorCode::usage, told_place(scenario, "sky.constellations", "sky.constellations") +
-                                          "leaves out gps, but the nominal constellation is GPS; expected navigation "
-                                          "data, by sky.navigation or --nav");
     if (scenario.sky.rebase_navigation)
         return fail(ErrorCode::usage, told_place(scenario, "sky.rebase_navigation", "--rebase-nav") +
                                           "moves navigation data, but there is none; expected some, by sky.navigation "
                                           "or --nav");
-    LoadedNavigation loaded{std::make_unique<NominalConstellation>(), {}, {}};
+    LoadedNavigation loaded{std::make_unique<NominalSky>(nominal_constellations(scenario)), {}, {}};
     loaded.start = scenario.run.start.value_or(now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     return loaded;

@@ -83,7 +83,7 @@ struct RunSettings {
 };
 
 struct SkySettings {
-    std::vector<std::filesystem::path> navigation;  ///< empty: the nominal constellation
+    std::vector<std::filesystem::path> navigation;  ///< empty: the nominal sky
     bool rebase_navigation = false;                 ///< move the data to the start time, keeping its time of day
     std::vector<Constellation> constellations;      ///< empty: all of the data; for sensor models gps and qzss
     std::optional<Angle> elevation_mask;            ///< nothing: the board's; of sensor models 5°

@@ -134,7 +134,7 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
 void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
     std::vector<std::string> files;
     sky.text_or_texts("navigation", files,
-                      {"navigation files: RINEX 2, 3 or 4, YUMA or SEM almanac, packed too", "nominal constellation"});
+                      {"navigation files: RINEX 2, 3 or 4, YUMA or SEM almanac, packed too", "nominal sky"});
     for (const std::string& file : files) {
         if (file.empty()) sky.mistake("navigation", "is empty; expected the path of a file");
         settings.navigation.push_back(folder / file);

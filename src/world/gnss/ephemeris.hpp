@@ -1,5 +1,5 @@
 /// Broadcast orbits and clocks of the satellites of every system.
-/// Where broadcast orbits come from: recorded files or a nominal constellation.
+/// Where broadcast orbits come from: recorded files or a nominal sky.
 #pragma once
 
 #include <array>

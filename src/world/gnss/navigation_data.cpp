@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "base/time/utc_time.hpp"
+#include "detail/secular_motion.hpp"
 #include "world/gnss/constants.hpp"
 #include "world/gnss/orbit.hpp"
 
@@ -265,18 +266,6 @@ constexpr std::array<NominalSlot, 31> nominal_slots{{
 }};
 
 constexpr double nominal_radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
-
-// start + rate·count reduced to ±π. The product is kept whole by its rounding error, so that neighbouring counts differ
-// by exactly one step even after decades.
-double reduced_angle(double start, double rate, std::int64_t count) {
-    const auto times = static_cast<double>(count);
-    const double product = rate * times;
-    const double rounding = std::fma(rate, times, -product);
-    constexpr double turn = 2 * std::numbers::pi;
-    return std::remainder(std::remainder(product, turn) + rounding + start, turn);
-}
-
-std::int64_t floor_divide(std::int64_t a, std::int64_t b) { return a / b - (a % b < 0 ? 1 : 0); }
 
 }  // namespace
 

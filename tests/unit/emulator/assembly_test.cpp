@@ -96,8 +96,6 @@ TEST(Assembly, WhatAKeyIsRefusedForHasItsPlaceInTheFile) {
                 StartsWith("test.toml:3:1: [[fault]] 'outage': at_utc is 2024-03-05T11:00:00.000Z"));
     EXPECT_THAT(told("[sky]\nrebase_navigation = true"),
                 StartsWith("test.toml:2:21: sky.rebase_navigation: moves navigation data, but there is none"));
-    EXPECT_THAT(told("[sky]\nconstellations = [\"galileo\"]"),
-                StartsWith("test.toml:2:18: sky.constellations: leaves out gps"));
     const std::string header = "[model]\nname = \"baseline\"\n[atmosphere]\ntec_source = \"header\"\n";
     for (const char* receivers : {"", "[[receiver]]\n[[receiver]]\n"})
         EXPECT_THAT(told(header + receivers),
@@ -427,9 +425,10 @@ TEST(Assembly, AFaultThatWillShowNothingIsAWarning) {
         return std::string();
     };
     const auto tracks_none = HasSubstr("'outage' will show nothing: no receiver tracks what it is for");
-    EXPECT_THAT(told("\"outage\"\nconstellations = [\"galileo\"]"), tracks_none) << "the nominal sky is of GPS";
-    EXPECT_THAT(told("\"outage\"\nsatellites = [\"R05\"]"), tracks_none);
-    EXPECT_THAT(told("\"outage\"\nsatellites = [\"R05\", \"G05\"]"), "");
+    EXPECT_THAT(told("\"outage\"\nconstellations = [\"navic\"]"), tracks_none) << "a board of GPS and others";
+    EXPECT_THAT(told("\"outage\"\nconstellations = [\"galileo\"]"), "");
+    EXPECT_THAT(told("\"outage\"\nsatellites = [\"I06\"]"), tracks_none);
+    EXPECT_THAT(told("\"outage\"\nsatellites = [\"I06\", \"G05\"]"), "");
     EXPECT_THAT(told("\"outage\"\nsignals = [\"L5\"]"), tracks_none);
     EXPECT_THAT(told("\"outage\"\nsignals = [\"L2\"]", "[[receiver]]\nboard = \"ublox-f9p\""), "");
     EXPECT_THAT(told("\"outage\"\nazimuth_from_deg = 10\nazimuth_to_deg = 20"), "");

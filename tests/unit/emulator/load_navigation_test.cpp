@@ -79,20 +79,25 @@ protected:
 
 TEST_F(LoadNavigation, WithoutAFileTheNominalConstellationServesFromNow) {
     const LoadedNavigation loaded = load(emulator_scenario(""));
-    EXPECT_THAT(loaded.source->satellites(), SizeIs(31));
+    EXPECT_THAT(loaded.source->satellites(), SizeIs(146));
     EXPECT_EQ(loaded.start, wall_now);
     EXPECT_THAT(loaded.warnings, IsEmpty());
     const GpsTime asked = load(emulator_scenario("[run]\nstart = 2024-03-05T00:00:00Z")).start;
     EXPECT_EQ(asked, data_day + 18s);
 }
 
-TEST_F(LoadNavigation, TheNominalConstellationIsGps) {
+TEST_F(LoadNavigation, TheNominalSkyHasTheSystemsThatAreAskedFor) {
+    const auto satellites = [](const std::string& text) {
+        return load_navigation(emulator_scenario(text), wall_now).value().source->satellites();
+    };
+    EXPECT_THAT(satellites("[sky]\nconstellations = [\"galileo\"]"), SizeIs(24));
+    // The article's reference system is GPS.
+    EXPECT_THAT(satellites("[model]\nname = \"baseline\""), SizeIs(31));
+    EXPECT_THAT(satellites("[model]\nname = \"baseline\"\n[sky]\nconstellations = [\"gps\", \"glonass\"]"), SizeIs(55));
     const auto refused = [](const std::string& sky) {
         const auto loaded = load_navigation(emulator_scenario("[sky]\n" + sky), wall_now);
         return loaded ? "accepted" : loaded.error().message;
     };
-    EXPECT_THAT(refused("constellations = [\"galileo\"]"), HasSubstr("the nominal constellation is GPS"));
-    EXPECT_EQ(refused("constellations = [\"galileo\", \"gps\"]"), "accepted");
     EXPECT_THAT(refused("rebase_navigation = true"), HasSubstr("there is none"));
 }
 

@@ -6,7 +6,8 @@ import { formFor } from "./form.js";
 import { percent, words } from "./format.js";
 
 const layerTitles = {
-    signals: "Signals", solution: "Solution", receiver: "Receiver", wire: "Wire", command: "Commands, at once",
+    signals: "Signals", solution: "Solution", receiver: "Receiver", wire: "Wire", corrections: "Corrections",
+    command: "Commands, at once",
 };
 
 // These have buttons of their own.
