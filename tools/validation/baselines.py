@@ -12,8 +12,10 @@ LATITUDE, LONGITUDE, HEIGHT = 46.4775, 30.7326, 77.0
 METRES_PER_DEGREE = 111194.93
 WRONG_M, WRONG_UP_M = 0.1, 0.25
 
-HEADER = ("| surroundings | motion | km | fixed | first fix, s | error 68 %, mm | told, mm | within | wrong | "
-          "RTKLIB fixed | first fix, s | error 68 %, mm | wrong |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|")
+OUTAGE_S = 10
+
+HEADER = ("| surroundings | motion | km | fixed | first fix, s | again, s | error 68 %, mm | told, mm | within | wrong | "
+          "RTKLIB fixed | first fix, s | again, s | error 68 %, mm | wrong |\n" + "|---" * 15 + "|")
 
 RTKLIB = """pos1-posmode=kinematic
 pos1-frequency=l1+2
@@ -45,6 +47,11 @@ class Setup:
     distances_km: list
     seconds: float
     navigation: pathlib.Path  # RINEX
+
+    @property
+    def outage_at_s(self):
+        """Of the rovers."""
+        return self.seconds // 2
 
 
 @dataclasses.dataclass
@@ -90,7 +97,8 @@ CFG-UART1OUTPROT-RTCM3X = true
                 else f'kind = "fixed"\nat = [{LATITUDE}, {longitude}, 90]\n')
         text += (f'[[receiver]]\nname = "rover{km:g}"\nboard = "ublox-f9p"\nbaud = 460800\ncorrections_from = "base"\n'
                  f"[receiver.trajectory]\n{path}")
-    return text
+    rovers = ", ".join(f'"rover{km:g}"' for km in setup.distances_km)
+    return text + (f'[[fault]]\nkind = "outage"\nreceiver = [{rovers}]\nat_s = {setup.outage_at_s:g}\nfor_s = {OUTAGE_S}\n')
 
 
 def level_and_up(place, truth):
@@ -142,29 +150,30 @@ def run(program, setup, seed, folder):
     return results
 
 
-def first_fix(epochs):
+def first_fix(epochs, after_s=0):
     """Seconds."""
-    return next((str(epoch.at_s) for epoch in epochs if epoch.fixed), "–")
+    return next((f"{epoch.at_s - after_s:g}" for epoch in epochs if epoch.fixed and epoch.at_s >= after_s), "–")
 
 
-def summary(series):
-    """Share fixed, first fixes, error, told, within, wrong, of the epochs of some runs."""
+def summary(series, setup):
+    """Share fixed, first fixes, those after the outage, error, told, within, wrong, of the epochs of some runs."""
     every = [epoch for epochs in series for epoch in epochs]
     fixed = [epoch for epoch in every if epoch.fixed]
-    firsts = [first_fix(epochs) for epochs in series]
+    firsts = " ".join(first_fix(epochs) for epochs in series)
+    again = " ".join(first_fix(epochs, setup.outage_at_s + OUTAGE_S) for epochs in series)
     if not fixed:
-        return 0.0, firsts, None
+        return 0.0, firsts, again, None
     errors = sorted(epoch.level_m for epoch in fixed)
     wrong = sum(epoch.level_m > WRONG_M or abs(epoch.up_m) > WRONG_UP_M for epoch in fixed) / len(fixed)
     within = sum(epoch.level_m <= epoch.told_m for epoch in fixed) / len(fixed)
     told = sum(epoch.told_m for epoch in fixed) / len(fixed)
-    return len(fixed) / len(every), firsts, (errors[int(0.68 * (len(errors) - 1))], told, within, wrong)
+    return len(fixed) / len(every), firsts, again, (errors[int(0.68 * (len(errors) - 1))], told, within, wrong)
 
 
 def row(setup, km, runs):
-    own_share, own_first, own = summary([one[0] for one in runs])
-    share, first, other = summary([one[1] for one in runs])
-    cells = [setup.surroundings, "circle, 8 m/s" if setup.moving else "at rest", f"{km:g}", f"{own_share:.2f}", " ".join(own_first)]
+    own_share, own_first, own_again, own = summary([one[0] for one in runs], setup)
+    share, first, again, other = summary([one[1] for one in runs], setup)
+    cells = [setup.surroundings, "circle, 8 m/s" if setup.moving else "at rest", f"{km:g}", f"{own_share:.2f}", own_first, own_again]
     cells += [f"{1000 * own[0]:.1f}", f"{1000 * own[1]:.1f}", f"{own[2]:.2f}", f"{own[3]:.3f}"] if own else ["", "", "", ""]
-    cells += [f"{share:.2f}", " ".join(first)] + ([f"{1000 * other[0]:.1f}", f"{other[3]:.3f}"] if other else ["", ""])
+    cells += [f"{share:.2f}", first, again] + ([f"{1000 * other[0]:.1f}", f"{other[3]:.3f}"] if other else ["", ""])
     return "| " + " | ".join(cells) + " |"

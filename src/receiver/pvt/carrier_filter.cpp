@@ -69,6 +69,8 @@ private:
     void predict(const Spacing& spacing, Seconds passed);
     void begin_ambiguity(const SingleDifference& d, GpsTime time);
     [[nodiscard]] Eigen::RowVectorXd row_of(const SingleDifference& d, bool phase) const;
+    [[nodiscard]] bool settled(const SingleDifference& d) const;
+    [[nodiscard]] double code_weakness(const SingleDifference& d, Seconds passed) const;
     [[nodiscard]] GroupEquations equations(const Group& group, bool phase, Seconds passed) const;
     void use_codes(const Group& group, Seconds passed);
     bool use_phases(Group group, GpsTime time);
@@ -151,17 +153,28 @@ Eigen::RowVectorXd CarrierFilter::State::row_of(const SingleDifference& d, bool 
     return row;
 }
 
+bool CarrierFilter::State::settled(const SingleDifference& d) const {
+    return difference(*time_, tracked_.at(ambiguity_of(d)).since) >= p_.settled_after;
+}
+
+// By how much the variance of a code is larger. Loops that have just begun are off by more than they will be; after
+// that errors last, so that codes say something new by and by.
+double CarrierFilter::State::code_weakness(const SingleDifference& d, Seconds passed) const {
+    constexpr double of_young = 4;
+    if (!settled(d)) return of_young;
+    if (tracked_.at(ambiguity_of(d)).fresh) return 1;
+    return std::max(1.0, 2 * p_.code_memory.value() / std::max(passed.value(), 1e-3));
+}
+
 GroupEquations CarrierFilter::State::equations(const Group& group, bool phase, Seconds passed) const {
     const auto count = static_cast<Index>(group.size());
     MatrixXd rows(count, state_.size());
     VectorXd observed(count), variances(count);
-    const double lasting = std::max(1.0, 2 * p_.code_memory.value() / std::max(passed.value(), 1e-3));
     for (Index i = 0; i < count; ++i) {
         const SingleDifference& d = *group[static_cast<std::size_t>(i)];
         rows.row(i) = row_of(d, phase);
         observed(i) = phase ? d.phase_m : d.code_m;
-        const bool fresh = tracked_.at(ambiguity_of(d)).fresh;
-        variances(i) = phase ? d.phase_variance : d.code_variance * (fresh ? 1 : lasting);
+        variances(i) = phase ? d.phase_variance : d.code_variance * code_weakness(d, passed);
     }
     const VectorXd off = observed - rows * state_.values;
     const Index others = count - 1;
@@ -175,7 +188,7 @@ void CarrierFilter::State::use_codes(const Group& group, Seconds passed) {
     const GroupEquations e = equations(group, false, passed);
     state_.absorb(e.design, e.misfit, e.noise);
     for (const SingleDifference* d : group)
-        tracked_.at(ambiguity_of(*d)).fresh = false;
+        if (settled(*d)) tracked_.at(ambiguity_of(*d)).fresh = false;
 }
 
 // False: most of them do not fit what was known. One that does not is taken for a slip; when it is the reference, the
