@@ -189,9 +189,7 @@ Result<Scenario> scenario_with(const std::string& file, const std::vector<std::s
 void add_place_options(CLI::App& command, RunOptions& options) {
     command.add_option("--at", options.at,
                        "Stand still there: LAT,LON[,HEIGHT] in degrees and metres above the ellipsoid");
-    command
-        .add_option("--nav", options.nav,
-                    "RINEX navigation file or almanac; repeatable; without it a nominal sky")
+    command.add_option("--nav", options.nav, "RINEX navigation file or almanac; repeatable; without it a nominal sky")
         ->allow_extra_args(false);
     options.keys.add_flag(command, "--rebase-nav", "sky.rebase_navigation", "true",
                           "Move the navigation data to the start time, keeping its time of day");

@@ -102,7 +102,8 @@ TEST(LedSky, WhatIsBlockedIsNotUsed) {
         ASSERT_NE(now, nullptr);
         EXPECT_EQ(now->flags & (SKY_SAT_USED | SKY_SAT_SEEN), 0) << int{one.sv_id};
     }
-    EXPECT_EQ(used(walled), used(sky) - used(east));
+    EXPECT_GE(used(walled), used(sky) - used(east)) << "others may take their place";
+    EXPECT_LT(used(walled), used(sky));
     // What is taken back is as if it had never been said.
     ASSERT_EQ(tell(run, all_of(east, SKY_LOS_UNKNOWN)), SKY_OK);
     run.advance(20 * led_s);

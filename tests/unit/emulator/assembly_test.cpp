@@ -425,10 +425,11 @@ TEST(Assembly, AFaultThatWillShowNothingIsAWarning) {
         return std::string();
     };
     const auto tracks_none = HasSubstr("'outage' will show nothing: no receiver tracks what it is for");
-    EXPECT_THAT(told("\"outage\"\nconstellations = [\"navic\"]"), tracks_none) << "a board of GPS and others";
-    EXPECT_THAT(told("\"outage\"\nconstellations = [\"galileo\"]"), "");
-    EXPECT_THAT(told("\"outage\"\nsatellites = [\"I06\"]"), tracks_none);
-    EXPECT_THAT(told("\"outage\"\nsatellites = [\"I06\", \"G05\"]"), "");
+    EXPECT_THAT(told("\"outage\"\nconstellations = [\"galileo\"]"), tracks_none)
+        << "the board is one of GPS and GLONASS";
+    EXPECT_THAT(told("\"outage\"\nconstellations = [\"glonass\"]"), "");
+    EXPECT_THAT(told("\"outage\"\nsatellites = [\"E05\"]"), tracks_none);
+    EXPECT_THAT(told("\"outage\"\nsatellites = [\"R05\", \"G05\"]"), "");
     EXPECT_THAT(told("\"outage\"\nsignals = [\"L5\"]"), tracks_none);
     EXPECT_THAT(told("\"outage\"\nsignals = [\"L2\"]", "[[receiver]]\nboard = \"ublox-f9p\""), "");
     EXPECT_THAT(told("\"outage\"\nazimuth_from_deg = 10\nazimuth_to_deg = 20"), "");
