@@ -348,6 +348,11 @@ class ArduPilotNmea(Client):
             self.pump(0.2)
             self.speed(38400)
             self.pump(1.5)
+        if self.board.name == "airoha-ag33xx":
+            # So does its GSV of four systems and two bands at 115200 baud.
+            self.send(nmea.sentence("PAIR062,3,0"))
+            self.pump(1.5)
+            self.forget()
         sentences = [i for i in self.collect(HEALTHY) if isinstance(i, ubx.Sentence)]
         for sentence in sentences:
             self.check(all(len(term) < 30 for term in sentence.fields), "terms of less than 30 characters", sentence)

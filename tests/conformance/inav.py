@@ -28,6 +28,8 @@ class Inav(Client):
     name = "INAV"
     after_power_on = 3.5
     rounds = 3
+    # With all systems NAV-SIG of two bands at 10 Hz is as much as the line carries, and solutions are lost.
+    scenario = '[sky]\nconstellations = ["gps"]\n'
 
     def run(self):
         for number in range(self.rounds):

@@ -25,6 +25,8 @@ class Tracker(Client):
         self.check(self.version(WAIT) is not None, "MON-VER", None)
         self.quieten()
         self.step("a position")
+        self.pump(1.0)  # sentences of the epoch that is on its way
+        self.forget()
         self.position(15)
         self.sleep_for(6)
         self.sleep_until_woken()
