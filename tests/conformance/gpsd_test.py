@@ -45,8 +45,9 @@ class GpsdConfigures(unittest.TestCase):
                 device = next((d for d in devices if d.get("driver") == "u-blox"), device)
             if report["class"] == "TPV" and report.get("mode") == 3 and device:
                 fix, fixed = report, arrived
-            # Before gpsd has the receiver's NAV-SAT it makes a SKY of each group of GSV, the untracked satellites' too.
-            if report["class"] == "SKY" and report.get("uSat"):
+            # Before gpsd has the receiver's NAV-SAT it makes a SKY of each group of GSV, the untracked satellites' too,
+            # and each of one system.
+            if report["class"] == "SKY" and any(s["used"] and s.get("gnssid") == 0 for s in report.get("satellites", [])):
                 sky = report
             if device and device.get("subtype1") and fix and sky:
                 break
