@@ -425,7 +425,7 @@ what = "the moon rises"
             self.assertIn(f">{satellite['satellite']}<", svg)
         tracks = skyloop("sky", *arguments, "--tracks", 46, "--step", 3600, "--format", "csv").stdout.splitlines()
         self.assertEqual(tracks[0], "time_utc,satellite,x_m,y_m,z_m")
-        self.assertEqual(len(tracks), 1 + 31 * 47)
+        self.assertEqual(len(tracks), 1 + 146 * 47)
 
 
 if __name__ == "__main__":
