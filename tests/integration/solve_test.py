@@ -29,7 +29,7 @@ class Solve(unittest.TestCase):
         cls.addClassCleanup(temporary.cleanup)
         cls.folder = pathlib.Path(temporary.name)
         scenario = cls.folder / "moves.toml"
-        scenario.write_text('[run]\nstart = 2026-03-01T12:00:00Z\n[trajectory]\nkind = "circle"\ncentre = [46.5, 30.7, 50]\n'
+        scenario.write_text('[run]\nstart = 2026-03-01T12:00:00Z\n[sky]\nconstellations = ["gps"]\n[trajectory]\nkind = "circle"\ncentre = [46.5, 30.7, 50]\n'
                             'radius_m = 200\nspeed_mps = 20\n', encoding="utf-8")
         skyloop("simulate", scenario, "--board", "ublox-f9p", "--duration", 5, "--out", cls.folder)
         cls.nav = ["--nav", cls.folder / "navigation.rnx"]
