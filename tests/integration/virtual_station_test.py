@@ -13,7 +13,7 @@ from session import Emulator, open_folder, skyloop
 from tcp_client_test import connect
 
 PLACE = (46.4775, 30.7326, 77.0)
-SKY = "[run]\nsky_seed = 3\nreceiver_seed = {}\n"
+SKY = '[run]\nsky_seed = 3\nreceiver_seed = {}\n[sky]\nconstellations = ["gps"]\n'
 # The run that has the caster is 40 km away, and its receiver could not send RTCM.
 NETWORK = SKY.format(1) + """[trajectory]
 kind = "fixed"
