@@ -94,7 +94,9 @@ TEST(NominalSky, GroundTracksRepeat) {
         {{System::galileo, 11}, 10}, {{System::beidou, 23}, 7}, {{System::glonass, 5}, 8}, {{System::qzss, 2}, 1}};
     for (const auto& [id, days] : cycles) {
         const GpsTime t = gps_calendar_time(2024, 3, 5, 0, 0, 0);
-        const auto place = [&](GpsTime at) { return satellite_state(*whole_sky.ephemeris(id, at), at).position; };
+        const auto place = [&, satellite = id](GpsTime at) {
+            return satellite_state(*whole_sky.ephemeris(satellite, at), at).position;
+        };
         // The nodes drift, so that a day is shorter than a sidereal one by up to eight seconds.
         double nearest = 1e9;
         for (double less = 235; less < 246; less += 0.25)
