@@ -20,30 +20,38 @@ def metres_per_degree():
     return math.radians(meridian), math.radians(normal) * math.sqrt(1 - sine * sine)
 
 
-def scenario(*, told_north_m=0.0, seconds=150, faults=""):
-    """A base that says it stands so far north of its place, and a rover a kilometre east of that; GPS alone."""
-    north, east = metres_per_degree()
-    latitude, longitude = BASE[0] + told_north_m / north, BASE[1] + EAST_M / east
-    return f"""[run]
-start = 2026-03-01T00:00:00Z
-duration_s = {seconds}
-seed = 4
-[trajectory]
-kind = "fixed"
-at = [{BASE[0]}, {BASE[1]}, {HEIGHT}]
-[[receiver]]
-name = "base"
+def station(name, latitude, told_latitude, config=""):
+    """A base with its place, and the latitude that it sends."""
+    return f"""[[receiver]]
+name = "{name}"
 board = "ublox-f9p"
 baud = 460800
 [receiver.config]
 CFG-TMODE-MODE = 2
 CFG-TMODE-POS_TYPE = 1
-CFG-TMODE-LAT = {round(latitude * 1e7)}
+CFG-TMODE-LAT = {round(told_latitude * 1e7)}
 CFG-TMODE-LON = {round(BASE[1] * 1e7)}
 CFG-TMODE-HEIGHT = {round(HEIGHT * 100)}
 CFG-UART1OUTPROT-NMEA = false
 CFG-UART1OUTPROT-RTCM3X = true
+{config}
 {MESSAGES}
+[receiver.trajectory]
+kind = "fixed"
+at = [{latitude}, {BASE[1]}, {HEIGHT}]
+"""
+
+
+def scenario(*, told_north_m=0.0, seconds=150, faults=""):
+    """A base that sends a latitude so far north of its place, and a rover a kilometre east of that; GPS alone."""
+    north, east = metres_per_degree()
+    return f"""[run]
+start = 2026-03-01T00:00:00Z
+duration_s = {seconds}
+seed = 4
+[sky]
+constellations = ["gps"]
+{station("base", BASE[0], BASE[0] + told_north_m / north)}
 [[receiver]]
 name = "rover"
 board = "ublox-f9p"
@@ -51,7 +59,7 @@ baud = 460800
 corrections_from = "base"
 [receiver.trajectory]
 kind = "fixed"
-at = [{BASE[0]}, {longitude}, 90.0]
+at = [{BASE[0]}, {BASE[1] + EAST_M / east}, 90.0]
 {faults}
 """
 
@@ -62,24 +70,7 @@ def fault(kind, receiver="rover", more="", for_s=60):
 
 
 # A second base, of another number, 36 km north.
-FAR_BASE = f"""[[receiver]]
-name = "far"
-board = "ublox-f9p"
-baud = 460800
-[receiver.config]
-CFG-RTCM-DF003_OUT = 9
-CFG-TMODE-MODE = 2
-CFG-TMODE-POS_TYPE = 1
-CFG-TMODE-LAT = 468000000
-CFG-TMODE-LON = {round(BASE[1] * 1e7)}
-CFG-TMODE-HEIGHT = {round(HEIGHT * 100)}
-CFG-UART1OUTPROT-NMEA = false
-CFG-UART1OUTPROT-RTCM3X = true
-{MESSAGES}
-[receiver.trajectory]
-kind = "fixed"
-at = [46.8, {BASE[1]}, {HEIGHT}]
-"""
+FAR_BASE = station("far", 46.8, 46.8, "CFG-RTCM-DF003_OUT = 9")
 
 
 class CorrectionsTest(unittest.TestCase):

@@ -90,10 +90,10 @@ constexpr ParameterSpec place_offset(std::string_view name, double standard, std
 
 constexpr auto gradual_correction_kinds = std::to_array<FaultKind>({
     {"base_misplaced",
-     "The base tells that it stands elsewhere: 1005, 1006, 4072.0. A rover's solution is off by the same vector, with "
-     "its accuracies as good as ever; from a kilometre on ambiguities no longer fit.",
+     "The base sends wrong coordinates of itself (1005, 1006, 4072.0). A rover's solution is off by the same vector, "
+     "with unchanged accuracies; from about a kilometre on ambiguities no longer fit.",
      "A mistyped coordinate, a survey-in that ended early, a height of the marker given as that of the antenna.",
-     {place_offset("east_m", 0, "m that it tells too far east"), place_offset("north_m", 111, "the same, north"),
+     {place_offset("east_m", 0, "error of the coordinates, m"), place_offset("north_m", 111, "the same, north"),
       place_offset("up_m", 0, "the same, up"), correction_direction},
      make_base_misplaced},
     {"base_multipath",
@@ -136,10 +136,10 @@ constexpr auto switched_correction_kinds = without_strength(std::to_array<FaultK
      {correction_direction},
      with_flag<&CorrectionConditions::without_glonass_biases>},
     {"base_in_other_frame",
-     "The base tells its place by a national frame, which moves with its plate: a rover's solution is off by "
+     "The base sends its coordinates in a national frame, which moves with its plate: a rover's solution is off by "
      "the decimetres or metres between the two.",
      "A base surveyed against a national network while orbits are those of ITRF.",
-     {word_parameter("frame", "etrf2000", terrestrial_frame_names, "in which the place is told"), correction_direction},
+     {word_parameter("frame", "etrf2000", terrestrial_frame_names, "of the coordinates"), correction_direction},
      make_base_in_other_frame},
     {"wrong_mount_point",
      "Corrections of another receiver of the run come in place of those of `corrections_from`. A rover follows the "

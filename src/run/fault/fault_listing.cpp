@@ -61,7 +61,7 @@ std::string parameter_table(std::span<const ParameterSpec> specs) {
 // In the order of FaultLayer.
 constexpr std::array<std::string_view, 5> layer_headings{
     "Signals: what reaches the antenna", "Solution: what the receiver believes or reports", "Receiver: how it behaves",
-    "Wire: what becomes of the bytes", "Corrections: what a rover hears of its base"};
+    "Wire: what becomes of the bytes", "Corrections: what a rover receives from its base"};
 
 std::string idle_at(const ReceiverNeed* need) {
     return need == nullptr ? std::string() : fmt::format(" (Idle where the receiver {}.)", need->lack);

@@ -150,7 +150,7 @@ Result<Fault> make_antenna_moved(const Parameters& parameters, const FaultContex
 }
 
 constexpr ParameterSpec way_parameter(std::string_view name, double standard) {
-    return number_parameter(name, standard, -1e4, 1e4, "m by which it is off the path of the run");
+    return number_parameter(name, standard, -1e4, 1e4, "distance from the path of the run, m");
 }
 
 constexpr auto range_kinds = std::to_array<FaultKind>({
@@ -174,8 +174,8 @@ constexpr auto range_kinds = std::to_array<FaultKind>({
      make_cycle_slips,
      of_measurements},
     {"antenna_moved",
-     "The antenna is off the path that counts as true. Of a base, whose told place stays, it is a jump that nobody "
-     "tells: a rover's solution goes as far the other way at once, fixed as before, since nothing in the data "
+     "The antenna is away from its true path. Of a base, whose coordinates in its messages stay, it is an unannounced "
+     "jump: a rover's solution jumps as far the other way at once and stays fixed, since nothing in the data "
      "contradicts it.",
      "A tripod that is knocked over or set up again beside its mark, a mast that bends.",
      {way_parameter("east_m", 10), way_parameter("north_m", 0), way_parameter("up_m", 0)},
