@@ -164,7 +164,9 @@ class FakeCaster:
         self.server.close()
 
 
-class NtripTest(unittest.TestCase):
+class FolderTest(unittest.TestCase):
+    """A test with a folder for its scenarios."""
+
     def setUp(self):
         folder = open_folder()
         self.addCleanup(folder.cleanup)
@@ -175,6 +177,8 @@ class NtripTest(unittest.TestCase):
         path.write_text(text, encoding="utf-8")
         return path
 
+
+class NtripTest(FolderTest):
     def base(self, more="", *arguments):
         """A base with its caster, and the caster's port."""
         base = Emulator(self.scenario("base.toml", BASE + more), *arguments)

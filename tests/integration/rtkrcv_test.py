@@ -1,15 +1,14 @@
 """RTKLIB's rtkrcv in real time: the raw measurements of a rover, and the corrections of its base by the run's caster.
 
 Debian's rtkrcv 2.4.3 b34 opens what it calls ntripcli as an FTP client: str2str fetches the corrections for it."""
-import pathlib
 import shutil
 import socket
 import subprocess
 import time
 import unittest
 
-from ntrip_test import BASE, ROVER, free_port
-from session import Emulator, open_folder, skip
+from ntrip_test import BASE, ROVER, FolderTest, free_port
+from session import Emulator, skip
 
 PLACE = "at = [46.4775, 30.7326, 77.0]"
 AWAY = "at = [46.4865, 30.7326, 77.0]"  # a kilometre north
@@ -69,11 +68,8 @@ class Rtkrcv:
         self.process.wait(20)
 
 
-class RtkrcvTest(unittest.TestCase):
+class RtkrcvTest(FolderTest):
     def test_it_fixes_our_rover_by_our_caster(self):
-        folder = open_folder()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
         base = self.emulator("base.toml", BASE.replace("RTCM_3X_TYPE1074", "RTCM_3X_TYPE1077"))
         raw = "[receiver.config]\n" + "".join(f"CFG-MSGOUT-UBX_RXM_{name}_UART1 = 1\n" for name in ("RAWX", "SFRBX"))
         rover = self.emulator("rover.toml", ROVER.replace(PLACE, AWAY) + raw)
@@ -93,9 +89,7 @@ class RtkrcvTest(unittest.TestCase):
         self.assertAlmostEqual((float(fixed[3]) - LONGITUDE) * metres * 0.688, 0, delta=0.1)
 
     def emulator(self, name, text):
-        path = self.folder / name
-        path.write_text(text, encoding="utf-8")
-        emulator = Emulator(path)
+        emulator = Emulator(self.scenario(name, text))
         self.addCleanup(emulator.__exit__)
         return emulator
 

@@ -2,14 +2,13 @@
 import csv
 import json
 import math
-import pathlib
 import re
 import socket
 import time
 import unittest
 
-from ntrip_test import Heard, answer_to, messages_in, request, unchunked
-from session import Emulator, open_folder, skyloop
+from ntrip_test import FolderTest, Heard, answer_to, messages_in, request, unchunked
+from session import Emulator, skyloop
 from tcp_client_test import connect
 
 PLACE = (46.4775, 30.7326, 77.0)
@@ -54,17 +53,7 @@ def gga(latitude, longitude, msl_m, quality=1):
     return f"${body}*{checksum:02X}"
 
 
-class VirtualStationTest(unittest.TestCase):
-    def setUp(self):
-        folder = open_folder()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def scenario(self, name, text):
-        path = self.folder / name
-        path.write_text(text, encoding="utf-8")
-        return path
-
+class VirtualStationTest(FolderTest):
     def network(self, *arguments):
         network = Emulator(self.scenario("network.toml", NETWORK), *arguments)
         self.addCleanup(network.__exit__)

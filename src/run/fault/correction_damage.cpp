@@ -93,8 +93,8 @@ Bytes CorrectionDamage::change(Bytes frame, GpsTime now) {
 // All messages of an epoch pass, or none does.
 bool CorrectionDamage::is_due(GpsTime epoch) {
     constexpr Seconds clock_error{1e-3};
-    const bool soon = passed_ && epoch != *passed_ && epoch > *passed_ &&
-                      difference(epoch, *passed_) < conditions_.least_period - clock_error;
+    const bool soon =
+        passed_ && epoch > *passed_ && difference(epoch, *passed_) < conditions_.least_period - clock_error;
     if (!soon) passed_ = epoch;
     return !soon;
 }

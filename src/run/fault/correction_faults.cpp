@@ -143,8 +143,7 @@ constexpr auto switched_correction_kinds = without_strength(std::to_array<FaultK
      make_base_in_other_frame},
     {"wrong_mount_point",
      "Corrections of another receiver of the run come in place of those of `corrections_from`. A rover follows the "
-     "other "
-     "station when the one that it knew has been silent for ten seconds.",
+     "other station when the one that it knew has been silent for ten seconds.",
      "A mistyped or swapped mount point.",
      {text_parameter("of_receiver", "", "name of the receiver whose corrections come").that_is_needed()},
      make_wrong_mount_point},
