@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import datetime
 import math
 import pathlib
 import subprocess
@@ -9,9 +10,11 @@ import subprocess
 from validation import geodesy
 
 LATITUDE, LONGITUDE, HEIGHT = 46.4775, 30.7326, 77.0
+START = datetime.datetime(2023, 1, 1, 6)
 METRES_PER_DEGREE = 111194.93
 WRONG_M, WRONG_UP_M = 0.1, 0.25
 
+CORRECTIONS_FROM_S = 60  # rover and base have been tracking then, as where people begin
 OUTAGE_S = 10
 
 HEADER = ("| surroundings | motion | km | fixed | first fix, s | again, s | error 68 %, mm | told, mm | within | wrong | "
@@ -66,7 +69,7 @@ class Epoch:
 def scenario(setup, seed):
     base = "\n".join(f"CFG-MSGOUT-RTCM_3X_TYPE{number}_UART1 = 1" for number in MESSAGES)
     text = f"""[run]
-start = 2023-01-01T06:00:00Z
+start = {START:%Y-%m-%dT%H:%M:%S}Z
 duration_s = {setup.seconds:g}
 seed = {seed}
 [sky]
@@ -98,6 +101,7 @@ CFG-UART1OUTPROT-RTCM3X = true
         text += (f'[[receiver]]\nname = "rover{km:g}"\nboard = "ublox-f9p"\nbaud = 460800\ncorrections_from = "base"\n'
                  f"[receiver.trajectory]\n{path}")
     rovers = ", ".join(f'"rover{km:g}"' for km in setup.distances_km)
+    text += f'[[fault]]\nkind = "corrections_lost"\nreceiver = [{rovers}]\nat_s = 0\nfor_s = {CORRECTIONS_FROM_S}\n'
     return text + (f'[[fault]]\nkind = "outage"\nreceiver = [{rovers}]\nat_s = {setup.outage_at_s:g}\nfor_s = {OUTAGE_S}\n')
 
 
@@ -108,15 +112,16 @@ def level_and_up(place, truth):
 
 
 def rover_epochs(path):
-    """The rover's own, and {time of week, s: truth}."""
+    """The rover's own since corrections came, and {time of week, s: truth}."""
     epochs, truths = [], {}
     with open(path, encoding="utf-8", newline="") as file:
         for line in csv.DictReader(file):
             second = round(float(line["tow_s"]))
             truths[second] = tuple(float(line[f"true_{name}"]) for name in ("lat_deg", "lon_deg", "height_m"))
-            if line["lat_deg"]:
+            at_s = second - min(truths)
+            if line["lat_deg"] and at_s >= CORRECTIONS_FROM_S:
                 level = math.hypot(float(line["east_error_m"]), float(line["north_error_m"]))
-                epochs.append(Epoch(second - min(truths), line["fix_type"] == "rtk_fixed", level, float(line["up_error_m"]),
+                epochs.append(Epoch(at_s, line["fix_type"] == "rtk_fixed", level, float(line["up_error_m"]),
                                     float(line["h_acc_m"])))
     return epochs, truths
 
@@ -124,7 +129,9 @@ def rover_epochs(path):
 def rtklib_epochs(setup, base, rover, truths):
     settings, positions = rover.parent / "rtklib.conf", rover.parent / "rtklib.pos"
     settings.write_text(RTKLIB + f"ant2-pos1={LATITUDE}\nant2-pos2={LONGITUDE}\nant2-pos3={HEIGHT}\n", encoding="ascii")
-    subprocess.run(["rnx2rtkp", "-k", settings, "-o", positions, rover, base, setup.navigation], check=True, capture_output=True)
+    begin = START + datetime.timedelta(seconds=CORRECTIONS_FROM_S)
+    subprocess.run(["rnx2rtkp", "-k", settings, "-ts", f"{begin:%Y/%m/%d}", f"{begin:%H:%M:%S}", "-o", positions,
+                    rover, base, setup.navigation], check=True, capture_output=True)
     epochs = []
     for line in positions.read_text(encoding="ascii").splitlines():
         words = line.split()
@@ -150,7 +157,7 @@ def run(program, setup, seed, folder):
     return results
 
 
-def first_fix(epochs, after_s=0):
+def first_fix(epochs, after_s):
     """Seconds."""
     return next((f"{epoch.at_s - after_s:g}" for epoch in epochs if epoch.fixed and epoch.at_s >= after_s), "–")
 
@@ -159,7 +166,7 @@ def summary(series, setup):
     """Share fixed, first fixes, those after the outage, error, told, within, wrong, of the epochs of some runs."""
     every = [epoch for epochs in series for epoch in epochs]
     fixed = [epoch for epoch in every if epoch.fixed]
-    firsts = " ".join(first_fix(epochs) for epochs in series)
+    firsts = " ".join(first_fix(epochs, CORRECTIONS_FROM_S) for epochs in series)
     again = " ".join(first_fix(epochs, setup.outage_at_s + OUTAGE_S) for epochs in series)
     if not fixed:
         return 0.0, firsts, again, None

@@ -90,9 +90,6 @@ SingleDifference difference_of(const Observation& own, const Observation& refere
                                const CarrierParameters& parameters) {
     const double slant = 1 / std::max(std::sin(ends.elevation.rad()), 0.05);
     const double weak = weakness(own.cn0) + weakness(reference.cn0), old = parameters.per_age.value() * age.value();
-    const auto variance = [&](Metres floor, Metres at_zenith) {
-        return weak * (square(floor.value()) + square(at_zenith.value() * slant)) + square(old);
-    };
     SingleDifference d;
     d.satellite = own.satellite;
     d.signal = own.signal;
@@ -101,8 +98,12 @@ SingleDifference difference_of(const Observation& own, const Observation& refere
     d.phase_m = ends.own.left_of(phase_range(own)) - ends.reference.left_of(phase_range(reference));
     d.line = ends.own.sight.line;
     d.elevation = ends.elevation;
-    d.code_variance = variance(parameters.code_floor, parameters.code_at_zenith);
-    d.phase_variance = variance(parameters.phase_floor, parameters.phase_at_zenith);
+    d.code_variance =
+        weak * (square(parameters.code_floor.value()) + square(parameters.code_at_zenith.value() * slant)) +
+        square(old);
+    d.phase_variance = weak * square(parameters.phase_noise.value()) + square(old);
+    d.echo_variance = weak * square(parameters.phase_echo_at_zenith.value() * slant);
+    d.tracked = std::min(own.lock_time, reference.lock_time);
     d.ionosphere_factor = square(carrier_frequency(Signal::l1).value() / own.carrier.value());
     d.wet_mapping = slant;
     return d;

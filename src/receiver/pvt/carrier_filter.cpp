@@ -6,9 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "detail/named_state.hpp"
+#include "detail/carrier_state.hpp"
 #include "detail/square.hpp"
-#include "receiver/pvt/integer_search.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
@@ -19,12 +18,10 @@ using Eigen::VectorXd;
 using Kind = StateName::Kind;
 
 constexpr double place_deviation_m = 30, ambiguity_deviation_m = 100;  // before anything is known
-constexpr std::size_t least_satellites = 4, least_pairs = 4;
+constexpr std::size_t least_satellites = 4;
 // A phase that fits neither by its deviation nor by a part of a cycle has lost its count.
 constexpr double misfit_deviations = 5, misfit_m = 0.05;
 constexpr double most_misfit_of_codes = 25;  // of their variances
-
-StateName ambiguity_of(const SingleDifference& d) { return {Kind::ambiguity, d.satellite, d.signal}; }
 
 // What fits worse than its variance expects makes a solution that is worse by as much.
 void follow(double& excess, double misfit, Seconds passed) {
@@ -32,64 +29,7 @@ void follow(double& excess, double misfit, Seconds passed) {
     excess += -std::expm1(-passed.value() / averaged_over_s) * (std::clamp(misfit, 1.0, most) - excess);
 }
 
-// Differences of one signal of one system, the highest satellite first, which is the one that others are compared to.
-using Group = std::vector<const SingleDifference*>;
-
-struct GroupEquations {
-    MatrixXd design;
-    VectorXd misfit;
-    MatrixXd noise;
-};
-
-// Two ambiguities of one signal, by their places in the state.
-struct AmbiguityPair {
-    Index at, reference;
-};
-
 }  // namespace
-
-class CarrierFilter::State {
-public:
-    explicit State(const CarrierParameters& parameters) : p_(parameters) {}
-
-    std::optional<CarrierOffset> update(std::span<const SingleDifference> differences, const Spacing& spacing,
-                                        GpsTime time);
-    std::optional<FixedOffset> fix();
-    [[nodiscard]] bool contradicted() const { return misfits_ >= p_.most_misfits; }
-    [[nodiscard]] bool outlived(GpsTime time) const { return time_ && difference(time, *time_) > p_.memory; }
-
-private:
-    struct Tracked {
-        GpsTime since, seen;
-        bool fresh = true;  // its code has not counted yet
-    };
-
-    [[nodiscard]] double variance_of(const StateName& name, const Spacing& spacing) const;
-    void arrange(std::span<const SingleDifference> differences, const Spacing& spacing, GpsTime time);
-    void predict(const Spacing& spacing, Seconds passed);
-    void begin_ambiguity(const SingleDifference& d, GpsTime time);
-    [[nodiscard]] Eigen::RowVectorXd row_of(const SingleDifference& d, bool phase) const;
-    [[nodiscard]] bool settled(const SingleDifference& d) const;
-    [[nodiscard]] double code_weakness(const SingleDifference& d, Seconds passed) const;
-    [[nodiscard]] GroupEquations equations(const Group& group, bool phase, Seconds passed) const;
-    void use_codes(const Group& group, Seconds passed);
-    bool use_phases(Group group, GpsTime time);
-    [[nodiscard]] double misfit_of_codes() const;
-    [[nodiscard]] std::vector<AmbiguityPair> pairs(double most_variance, Seconds tracked) const;
-    [[nodiscard]] double variance_of_best(double share) const;
-    std::optional<FixedOffset> fix(const std::vector<AmbiguityPair>& pairs, double least_success);
-    void hold(const std::vector<AmbiguityPair>& pairs, const VectorXd& whole);
-
-    CarrierParameters p_;
-    NamedState state_;
-    std::map<StateName, Tracked> tracked_;
-    std::vector<SingleDifference> present_;  // of the last epoch
-    std::map<std::pair<Constellation, Signal>, Group> groups_;
-    std::optional<GpsTime> time_, fixed_since_;
-    int misfits_ = 0;                               // epochs in a row in which most phases did not fit
-    double misfit_squares_ = 0, misfit_count_ = 0;  // of this epoch's phases, in their expected variances
-    double excess_ = 1, code_excess_ = 1;           // of the variances, as misfits of the last seconds show it
-};
 
 double CarrierFilter::State::variance_of(const StateName& name, const Spacing& spacing) const {
     constexpr double least = 1e-4;  // m
@@ -119,15 +59,19 @@ void CarrierFilter::State::arrange(std::span<const SingleDifference> differences
     for (const SingleDifference& d : differences) {
         const auto known = tracked_.find(ambiguity_of(d));
         if (known == tracked_.end() || d.broken)
-            begin_ambiguity(d, time);
+            begin_ambiguity(d, time, d.tracked);
         else
             known->second.seen = time;
+        tracked_.at(ambiguity_of(d)).echo_variance = d.echo_variance / square(d.wavelength_m);
     }
 }
 
-void CarrierFilter::State::begin_ambiguity(const SingleDifference& d, GpsTime time) {
+void CarrierFilter::State::begin_ambiguity(const SingleDifference& d, GpsTime time, Seconds tracked) {
     const StateName name = ambiguity_of(d);
-    tracked_[name] = {time, time, true};
+    Tracked& now = tracked_[name];
+    now.since = advanced(time, -tracked);
+    now.seen = time;
+    now.fresh = true;
     state_.restart(state_.index(name), (d.phase_m - d.code_m) / d.wavelength_m,
                    square(ambiguity_deviation_m / d.wavelength_m));
 }
@@ -137,10 +81,12 @@ void CarrierFilter::State::predict(const Spacing& spacing, Seconds passed) {
         state_.restart(state_.index({axis}), 0, square(place_deviation_m));
     const double wet_left = std::exp(-passed.value() / p_.wet_memory.value());
     const double ionosphere_left = std::exp(-passed.value() / p_.ionosphere_memory.value());
+    const double echo_lost = -2 * std::expm1(-passed.value() / p_.phase_memory.value());
     for (Index i = 0; i < state_.size(); ++i) {
         const StateName& name = state_.names()[static_cast<std::size_t>(i)];
         if (name.kind == Kind::wet) state_.relax(i, wet_left, variance_of(name, spacing));
         if (name.kind == Kind::ionosphere) state_.relax(i, ionosphere_left, variance_of(name, spacing));
+        if (name.kind == Kind::ambiguity) state_.covariance(i, i) += echo_lost * tracked_.at(name).echo_variance;
     }
 }
 
@@ -213,7 +159,7 @@ bool CarrierFilter::State::use_phases(Group group, GpsTime time) {
             slipped.assign(1, 0);
         }
         for (auto i = slipped.rbegin(); i != slipped.rend(); ++i) {
-            begin_ambiguity(*group[*i], time);
+            begin_ambiguity(*group[*i], time, Seconds(0));
             group.erase(group.begin() + static_cast<std::ptrdiff_t>(*i));
         }
     }
@@ -264,94 +210,6 @@ std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const Single
     follow(code_excess_, codes, passed);
     return CarrierOffset{state_.values.head<3>(),
                          std::max(excess_, code_excess_) * state_.covariance.topLeftCorner<3, 3>()};
-}
-
-std::vector<AmbiguityPair> CarrierFilter::State::pairs(double most_variance, Seconds tracked) const {
-    std::vector<AmbiguityPair> pairs;
-    for (const auto& [name, group] : groups_) {
-        std::optional<Index> reference;
-        for (const SingleDifference* d : group) {
-            const Tracked& t = tracked_.at(ambiguity_of(*d));
-            if (!d->whole || d->elevation < p_.integers_from || d->phase_variance > most_variance ||
-                difference(*time_, t.since) < tracked)
-                continue;
-            const Index at = state_.index(ambiguity_of(*d));
-            if (reference)
-                pairs.push_back({at, *reference});
-            else
-                reference = at;
-        }
-    }
-    return pairs;
-}
-
-std::optional<FixedOffset> CarrierFilter::State::fix(const std::vector<AmbiguityPair>& pairs, double least_success) {
-    const auto count = static_cast<Index>(pairs.size());
-    const MatrixXd& p = state_.covariance;
-    VectorXd floats(count);
-    MatrixXd differenced(count, state_.size());
-    for (Index i = 0; i < count; ++i) {
-        const AmbiguityPair& pair = pairs[static_cast<std::size_t>(i)];
-        floats(i) = state_.values(pair.at) - state_.values(pair.reference);
-        differenced.row(i) = p.row(pair.at) - p.row(pair.reference);
-    }
-    MatrixXd covariance(count, count);
-    for (Index i = 0; i < count; ++i) {
-        const AmbiguityPair& pair = pairs[static_cast<std::size_t>(i)];
-        covariance.col(i) = differenced.col(pair.at) - differenced.col(pair.reference);
-    }
-    const auto found = search_integers(floats, covariance);
-    if (!found || found->success < least_success || found->ratio() < p_.least_ratio) return std::nullopt;
-    const Eigen::LDLT<MatrixXd> weights(covariance);
-    const MatrixXd of_place = differenced.leftCols<3>();
-    FixedOffset fixed;
-    fixed.offset = state_.values.head<3>() - of_place.transpose() * weights.solve(floats - found->best);
-    fixed.covariance = excess_ * (p.topLeftCorner<3, 3>() - of_place.transpose() * weights.solve(of_place));
-    fixed.ratio = found->ratio();
-    fixed.ambiguities = static_cast<int>(count);
-    if (!fixed_since_) fixed_since_ = time_;
-    if (difference(*time_, *fixed_since_) >= p_.hold_after) hold(pairs, found->best);
-    return fixed;
-}
-
-void CarrierFilter::State::hold(const std::vector<AmbiguityPair>& pairs, const VectorXd& whole) {
-    constexpr double held_to_cycles = 0.03;
-    MatrixXd design = MatrixXd::Zero(whole.size(), state_.size());
-    for (Index i = 0; i < whole.size(); ++i) {
-        design(i, pairs[static_cast<std::size_t>(i)].at) = 1;
-        design(i, pairs[static_cast<std::size_t>(i)].reference) = -1;
-    }
-    state_.absorb(design, whole - design * state_.values,
-                  square(held_to_cycles) * MatrixXd::Identity(whole.size(), whole.size()));
-}
-
-// The largest variance of a phase among so many of the best ones.
-double CarrierFilter::State::variance_of_best(double share) const {
-    std::vector<double> variances;
-    for (const SingleDifference& d : present_)
-        variances.push_back(d.phase_variance);
-    const auto at = variances.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(variances.size() - 1));
-    std::nth_element(variances.begin(), at, variances.end());
-    return *at;
-}
-
-// All of them, then those that have been tracked for a while, then ever better ones.
-std::optional<FixedOffset> CarrierFilter::State::fix() {
-    struct Part {
-        double share;
-        Seconds tracked;
-    };
-    const Seconds settled = p_.settled_after, later = 3 * settled;
-    std::size_t last = 0;
-    for (const Part part : {Part{1, settled}, {0.8, settled}, {1, later}, {0.8, later}, {0.6, later}, {0.4, later}}) {
-        const std::vector<AmbiguityPair> chosen = pairs(variance_of_best(part.share), part.tracked);
-        if (chosen.size() < least_pairs || chosen.size() == last) continue;
-        last = chosen.size();
-        const double least = part.share < 1 ? p_.least_success_of_part : p_.least_success;
-        if (auto fixed = fix(chosen, least)) return fixed;
-    }
-    fixed_since_.reset();
-    return std::nullopt;
 }
 
 CarrierFilter::CarrierFilter(const CarrierParameters& parameters)

@@ -29,9 +29,11 @@ struct SingleDifference {
     Eigen::Vector3d line;  ///< unit vector receiver to satellite, ECEF
     Angle elevation;
     double code_variance = 0, phase_variance = 0;  ///< m², of both ends together
+    double echo_variance = 0;                      ///< the same, of the errors of the phase that last
     double ionosphere_factor = 1;                  ///< its delay over that at GPS L1
     double wet_mapping = 1;                        ///< slant over zenith
     bool broken = false;                           ///< a count of cycles began anew at either end
+    Seconds tracked;                               ///< by both ends without a break, as they tell it
     bool whole = true;                             ///< its ambiguity is a whole number
 };
 
@@ -56,7 +58,9 @@ struct FixedOffset : CarrierOffset {
 /// A Kalman filter over double differences. Its parts: the place of this receiver, forgotten with each epoch; by how
 /// much more the wet air delays it at the zenith; the ionosphere's difference for each satellite; an ambiguity for each
 /// signal. All are single differences, so that the satellite to which the others are compared may change (RTKLIB manual
-/// 2.4.2, E.7). A code counts fully once for an ambiguity, and after that by how long its errors last.
+/// 2.4.2, E.7). A code counts fully once for an ambiguity, and after that by how long its errors last. What echoes do
+/// to a phase lasts, too: an ambiguity in the filter is a whole number of cycles and that, so it wanders, and is whole
+/// only to within so much.
 ///
 /// State: that, and which whole ambiguities are held.
 class CarrierFilter {

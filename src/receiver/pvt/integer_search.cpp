@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -179,6 +180,10 @@ double bootstrapped_success(const VectorXd& variances) {
 double IntegerCandidates::ratio() const {
     return best_norm > 0 ? second_norm / best_norm : std::numeric_limits<double>::infinity();
 }
+
+double IntegerCandidates::gap() const { return (second_norm - best_norm) / std::max(1.0, misfit()); }
+
+double IntegerCandidates::misfit() const { return best_norm / static_cast<double>(best.size()); }
 
 std::optional<IntegerCandidates> search_integers(const VectorXd& floats, const MatrixXd& covariance) {
     Decorrelation f;

@@ -15,8 +15,15 @@ struct IntegerCandidates {
     /// lower bound (Teunissen 1998, Success probability of integer GPS ambiguity rounding and bootstrapping, eq. 32).
     double success = 0;
 
-    /// The ratio test: how much worse the second best is.
+    /// How much worse the second best is, as receivers tell it.
     [[nodiscard]] double ratio() const;
+    /// The difference test: by how much worse the second best is, in units of what misfits the best one shows, where
+    /// these are more than their covariance expects. Twice the logarithm of how much more probable the best one is
+    /// (Verhagen 2005, The GNSS integer ambiguities, chapter 3). Other than of the ratio, its limit is the same for few
+    /// ambiguities and for many.
+    [[nodiscard]] double gap() const;
+    /// Of the best one, squared, for each ambiguity; 1 where the covariance is right.
+    [[nodiscard]] double misfit() const;
 };
 
 /// Least squares over whole numbers: decorrelation by unimodular transformations (Teunissen 1995, The least-squares

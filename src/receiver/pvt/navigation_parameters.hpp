@@ -106,25 +106,28 @@ struct DifferentialParameters {
 /// the baseline is that of differences between both ends.
 struct CarrierParameters {
     Metres code_floor{0.6}, code_at_zenith{0.8};  ///< of a code: √(floor² + (at_zenith/sin e)²), more below 40 dBHz
-    Metres phase_floor{0.005}, phase_at_zenith{0.005};  ///< the same of a phase
-    Seconds code_memory{100};                           ///< for which errors of a code last
-    MetresPerSecond per_age{0.0015};                    ///< of both, for each second that the reference's data are old
-    double ionosphere_per_length = 1.5e-6;              ///< at L1, slant
+    Seconds code_memory{100};                     ///< for which errors of a code last
+    Metres phase_noise{0.001};                    ///< of a phase, new with each epoch
+    Metres phase_echo_at_zenith{0.003};           ///< what echoes do to a phase, over sin e
+    Seconds phase_memory{60};                     ///< for which that lasts
+    MetresPerSecond per_age{0.0015};              ///< of both, for each second that the reference's data are old
+    double ionosphere_per_length = 1e-6;          ///< at L1, slant
     Metres ionosphere_most{1};
     Seconds ionosphere_memory{900};
     double wet_per_length = 1e-6, wet_per_height = 5e-5;  ///< at the zenith
     Metres wet_most{0.05};
     Seconds wet_memory{7200};
     Angle integers_from = Angle::degrees(12);  ///< elevation of satellites whose ambiguities are fixed
-    Seconds settled_after{5};                  ///< of tracking at both ends, an ambiguity may be fixed
-    double least_ratio = 3;                    ///< of the ratio test
-    double least_success = 0.99;               ///< of IntegerCandidates::success
-    double least_success_of_part = 0.999;      ///< where ambiguities are left out
+    Seconds settled_after{1};                  ///< of tracking at both ends, an ambiguity may be fixed
+    double least_gap = 20;                     ///< of IntegerCandidates::gap()
+    double least_success = 0.9;                ///< of IntegerCandidates::success
+    double least_success_of_part = 0.95;       ///< where ambiguities are left out
+    Metres most_when_fixed{0.1};               ///< deviation of a place in space that whole ambiguities give
     Seconds hold_after{5};                     ///< since they were fixed without a break, ambiguities are held
     Seconds memory{30};                        ///< of an ambiguity whose signal is missed
     int most_misfits = 3;             ///< epochs in which most phases contradict what is held, until all begins anew
     double told_per_length = 1.4e-6;  ///< of the reported accuracies, beside the filter's
-    Metres told_floor{0.002};         ///< the same
+    Metres told_floor{0.005};         ///< the same
 };
 
 /// What the receiver must hear of the satellites' data.

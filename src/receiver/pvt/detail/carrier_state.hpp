@@ -1,0 +1,78 @@
+/// What a CarrierFilter knows, and what it does with it.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "named_state.hpp"
+#include "receiver/pvt/carrier_filter.hpp"
+
+namespace skyloop::inline receiver {
+
+// Differences of one signal of one system, the highest satellite first, which is the one that others are compared to.
+using Group = std::vector<const SingleDifference*>;
+
+struct GroupEquations {
+    Eigen::MatrixXd design;
+    Eigen::VectorXd misfit;
+    Eigen::MatrixXd noise;
+};
+
+// Two ambiguities of one signal, by their places in the state.
+struct AmbiguityPair {
+    Eigen::Index at, reference;
+};
+
+inline StateName ambiguity_of(const SingleDifference& d) { return {StateName::Kind::ambiguity, d.satellite, d.signal}; }
+
+class CarrierFilter::State {
+public:
+    explicit State(const CarrierParameters& parameters) : p_(parameters) {}
+
+    std::optional<CarrierOffset> update(std::span<const SingleDifference> differences, const Spacing& spacing,
+                                        GpsTime time);
+    std::optional<FixedOffset> fix();
+    [[nodiscard]] bool contradicted() const { return misfits_ >= p_.most_misfits; }
+    [[nodiscard]] bool outlived(GpsTime time) const { return time_ && difference(time, *time_) > p_.memory; }
+
+private:
+    struct Tracked {
+        GpsTime since, seen;
+        bool fresh = true;         // its code has not counted yet
+        double echo_variance = 0;  // of its phase, cycles²
+    };
+
+    [[nodiscard]] double variance_of(const StateName& name, const Spacing& spacing) const;
+    void arrange(std::span<const SingleDifference> differences, const Spacing& spacing, GpsTime time);
+    void predict(const Spacing& spacing, Seconds passed);
+    void begin_ambiguity(const SingleDifference& d, GpsTime time, Seconds tracked);
+    [[nodiscard]] Eigen::RowVectorXd row_of(const SingleDifference& d, bool phase) const;
+    [[nodiscard]] bool settled(const SingleDifference& d) const;
+    [[nodiscard]] double code_weakness(const SingleDifference& d, Seconds passed) const;
+    [[nodiscard]] GroupEquations equations(const Group& group, bool phase, Seconds passed) const;
+    void use_codes(const Group& group, Seconds passed);
+    bool use_phases(Group group, GpsTime time);
+    [[nodiscard]] double misfit_of_codes() const;
+    [[nodiscard]] std::vector<AmbiguityPair> pairs(double most_variance, Seconds tracked) const;
+    [[nodiscard]] double variance_of_best(double share) const;
+    [[nodiscard]] Eigen::MatrixXd echoes(const std::vector<AmbiguityPair>& pairs) const;
+    std::optional<FixedOffset> fix(const std::vector<AmbiguityPair>& pairs, double least_success);
+    void hold(const std::vector<AmbiguityPair>& pairs, const Eigen::VectorXd& whole);
+
+    CarrierParameters p_;
+    NamedState state_;
+    std::map<StateName, Tracked> tracked_;
+    std::vector<SingleDifference> present_;  // of the last epoch
+    std::map<std::pair<Constellation, Signal>, Group> groups_;
+    std::optional<GpsTime> time_, fixed_since_;
+    int misfits_ = 0;                               // epochs in a row in which most phases did not fit
+    double misfit_squares_ = 0, misfit_count_ = 0;  // of this epoch's phases, in their expected variances
+    double excess_ = 1, code_excess_ = 1;           // of the variances, as misfits of the last seconds show it
+};
+
+}  // namespace skyloop::inline receiver
