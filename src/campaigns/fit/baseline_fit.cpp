@@ -89,10 +89,12 @@ Candidate best_of_all(const BaselineRun& run, const SampleStatistics& real) {
     return *best;  // the least of all is a dip
 }
 
-double six_digits(double value) {
-    if (value == 0) return 0;
-    const double unit = std::pow(10, std::floor(std::log10(std::abs(value))) - 5);
-    return std::round(value / unit) * unit;
+// Of the larger one, as the scenario has them.
+BaselineFractions with_six_digits(const BaselineFractions& exact) {
+    const double larger = std::max(exact.iono, exact.tropo);
+    if (!(larger > 0)) return {};
+    const double unit = std::pow(10, std::floor(std::log10(larger)) - 5);
+    return {std::round(exact.iono / unit) * unit, std::round(exact.tropo / unit) * unit};
 }
 
 }  // namespace
@@ -100,8 +102,7 @@ double six_digits(double value) {
 BaselineFit fit_fractions(const BaselineRun& run, const SampleStatistics& real) {
     const Candidate best = best_of_all(run, real);
     BaselineFit fit;
-    const BaselineFractions exact = best.proportion.of_size(best.size);
-    fit.fractions = {six_digits(exact.iono), six_digits(exact.tropo)};
+    fit.fractions = with_six_digits(best.proportion.of_size(best.size));
     RunningStatistics errors;
     for (const double value : run.horizontal_with(fit.fractions))
         errors.add(value);

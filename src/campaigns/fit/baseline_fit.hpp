@@ -8,7 +8,7 @@ namespace skyloop::inline campaigns {
 
 /// What was found.
 struct BaselineFit {
-    BaselineFractions fractions;  ///< with six digits
+    BaselineFractions fractions;  ///< with six digits of the larger one
     double difference = 0;        ///< D of comparison_percent() with them, percent
     bool at_limit = false;        ///< more than largest_fraction would have been nearer
 };

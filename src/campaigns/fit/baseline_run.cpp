@@ -119,8 +119,8 @@ Result<BaselineRun> run_baseline(const FitConditions& conditions, const Baseline
     if (stop) return fail(ErrorCode::outside, "stopped before its end");
     if (run.errors.horizontal.size() < 2)
         return fail(ErrorCode::input,
-                    fmt::format("{}: the model has {} fixes with these orbits at {}; expected a file that spans the "
-                                "log's time, with four satellites or more in view",
+                    fmt::format("{}: the model has {} fixes with these orbits at {}; expected the day's merged "
+                                "file, of which the model takes the records of the two hours before",
                                 run.navigation, run.errors.horizontal.size(),
                                 format_utc(to_utc(conditions.start, LeapSeconds::announced()), 0)));
     return run;

@@ -118,6 +118,18 @@ TEST(BaselineFit, says_where_the_fractions_end) {
     EXPECT_GT(fit.difference, 50);
 }
 
+// The proportion of 90° has a cosine that is not quite 0.
+TEST(BaselineFit, leaves_out_what_is_no_part) {
+    const BaselineRun run = run_with(BaselineFractions::calibrated());
+    const BaselineFit fit = fit_fractions(run, figures_of(run.horizontal_with({0, 1})));
+    EXPECT_NEAR(fit.fractions.tropo, 1, 1e-3);
+    EXPECT_LT(fit.fractions.iono, 1e-3);
+    SampleStatistics spread;  // further apart than the troposphere alone makes it
+    spread.n = 3600, spread.mean = 2, spread.std = 3;
+    const BaselineFit wide = fit_fractions(run, spread);
+    EXPECT_TRUE(wide.fractions.iono == 0 || wide.fractions.iono > 1e-6) << wide.fractions.iono;
+}
+
 // Millimetres, as of carrier phases.
 TEST(BaselineFit, fits_small_errors_too) {
     const BaselineRun run = run_with(BaselineFractions::calibrated());
