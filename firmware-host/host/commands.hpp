@@ -30,6 +30,7 @@ Action add_replay_command(CLI::App& app);
 Action add_power_command(CLI::App& app);
 Action add_trajectory_command(CLI::App& app);
 Action add_scenario_from_command(CLI::App& app);
+Action add_fit_command(CLI::App& app);
 Action add_campaign_command(CLI::App& app);
 
 }  // namespace skyloop::host

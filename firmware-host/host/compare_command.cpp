@@ -56,16 +56,6 @@ Result<FixSeries> read_view(const FileView& view, const Geoid* geoid) {
     return slice(view.own_mean ? without_truth(std::move(*series)) : std::move(*series), view.part);
 }
 
-// Errors up and in space would be about the ellipsoid, without a height.
-Result<Geodetic> reference_place(const std::string& text) {
-    auto place = parse_place(text, "--reference");
-    if (place && std::ranges::count(text, ',') < 2)
-        return fail(
-            ErrorCode::usage,
-            fmt::format("--reference {}: expected LAT,LON,HEIGHT, the height above the ellipsoid in metres", text));
-    return place;
-}
-
 int compare_files(const CompareOptions& options) {
     const Messages messages(options.verbosity);
     if (options.format == "svg" && options.window > 0)
@@ -76,7 +66,7 @@ int compare_files(const CompareOptions& options) {
     wanted.window = options.window;
     const bool own_mean = options.reference == "own-mean";
     if (!options.reference.empty() && !own_mean) {
-        const auto place = reference_place(options.reference);
+        const auto place = parse_reference(options.reference);
         if (!place) return messages.error(place.error());
         wanted.reference = *place;
     }

@@ -7,10 +7,13 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
+#include "base/core/files.hpp"
 #include "run/emulator/run_files.hpp"
 
 namespace skyloop::host {
@@ -96,6 +99,19 @@ Result<void> write_whole_file(const std::filesystem::path& path, std::string_vie
     file->flush();
     if (file->failure()) return fail(*file->failure());
     return {};
+}
+
+Result<void> check_made_by(std::string_view command, const std::vector<std::filesystem::path>& files) {
+    const auto is_there = [](const std::filesystem::path& file) {
+        std::error_code absent;
+        return std::filesystem::is_regular_file(file, absent);
+    };
+    const std::filesystem::path& first = files.front();
+    if (is_there(first) && first_line_of(first).starts_with(fmt::format("# Made by skyloop {}", command))) return {};
+    const auto found = std::find_if(files.begin(), files.end(), is_there);
+    if (found == files.end()) return {};
+    return fail(ErrorCode::usage, fmt::format("{}: is there already, and not by {}; expected --out with another folder",
+                                              found->string(), command));
 }
 
 }  // namespace skyloop::host

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/core/bytes.hpp"
 #include "base/core/result.hpp"
@@ -44,5 +45,9 @@ private:
 
 /// Writes a file that is made anew. @return why not all of it is there, with its name
 Result<void> write_whole_file(const std::filesystem::path& path, std::string_view text);
+
+/// Files that a command makes again are not to replace what somebody has written by hand: fails with `usage` where one
+/// of them is there, unless the first begins with "# Made by skyloop COMMAND", so that the command made them before.
+Result<void> check_made_by(std::string_view command, const std::vector<std::filesystem::path>& files);
 
 }  // namespace skyloop::host

@@ -259,6 +259,15 @@ Result<Geodetic> parse_place(const std::string& text, std::string_view option) {
     return *place;
 }
 
+Result<Geodetic> parse_reference(const std::string& text) {
+    auto place = parse_place(text, "--reference");
+    if (place && std::ranges::count(text, ',') < 2)
+        return fail(
+            ErrorCode::usage,
+            fmt::format("--reference {}: expected LAT,LON,HEIGHT, the height above the ellipsoid in metres", text));
+    return place;
+}
+
 std::optional<std::string> vehicle_warning(const Scenario& scenario) {
     for (const CommandEntry& command : scenario.commands)
         if (command.command.verb == CommandVerb::vehicle_state) return std::nullopt;

@@ -97,5 +97,7 @@ std::optional<std::string> pause_warning(const Scenario& scenario);
 
 /// Reads "LAT,LON" or "LAT,LON,HEIGHT": degrees and metres above the ellipsoid. @param option for messages
 Result<Geodetic> parse_place(const std::string& text, std::string_view option = "--at");
+/// The place of --reference, whose height has to be told: errors up and in space would be about the ellipsoid without.
+Result<Geodetic> parse_reference(const std::string& text);
 
 }  // namespace skyloop::host

@@ -45,20 +45,6 @@ void print_summary(const ObservedLog& log, const LogEvents& events, const LogSce
     if (events.events.empty()) fmt::print("faults      none: nothing went wrong in it\n");
 }
 
-// What somebody has written by hand is not replaced; what this command made before is.
-Result<void> find_room(const std::filesystem::path& folder, bool with_track) {
-    const auto is_there = [&folder](const char* name) {
-        std::error_code absent;
-        return std::filesystem::is_regular_file(folder / name, absent);
-    };
-    const bool scenario = is_there("scenario.toml");
-    if (scenario && first_line_of(folder / "scenario.toml").starts_with("# Made by skyloop scenario-from")) return {};
-    if (!scenario && !(with_track && is_there("track.csv"))) return {};
-    return fail(ErrorCode::usage,
-                fmt::format("{}: is there already, and not by scenario-from; expected --out with another folder",
-                            (folder / (scenario ? "scenario.toml" : "track.csv")).string()));
-}
-
 int make_scenario(const ScenarioFromOptions& options) {
     const Messages messages(options.verbosity);
     constexpr std::size_t largest = std::size_t{1} << 30;
@@ -81,7 +67,9 @@ int make_scenario(const ScenarioFromOptions& options) {
         for (const std::string& note : *notes)
             messages.warning(log->name + ": " + note);
     const std::filesystem::path folder = options.out;
-    if (const auto room = find_room(folder, !made->track.empty()); !room) return messages.error(room.error());
+    std::vector<std::filesystem::path> files{folder / "scenario.toml"};
+    if (!made->track.empty()) files.push_back(folder / "track.csv");
+    if (const auto room = check_made_by("scenario-from", files); !room) return messages.error(room.error());
     if (const auto made_folder = make_folder(folder); !made_folder) return messages.error(made_folder.error());
     if (!made->track.empty())
         if (const auto done = write_whole_file(folder / "track.csv", made->track); !done)

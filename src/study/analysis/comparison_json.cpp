@@ -26,8 +26,9 @@ Json figures_json(const SampleStatistics& s) {
 
 Json percent_json(const std::optional<ComparisonPercent>& p) {
     if (!p) return nullptr;
+    const auto agreement = p->agreement();
     return {{"difference_percent", p->difference},
-            {"agreement_percent", 100 - p->difference},
+            {"agreement_percent", agreement ? Json(*agreement) : Json(nullptr)},
             {"mean_difference_percent", p->mean_part},
             {"std_difference_percent", p->std_part},
             {"mean_near_zero", p->mean_near_zero}};

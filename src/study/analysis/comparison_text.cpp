@@ -114,8 +114,8 @@ std::string article_text(const Comparison& comparison) {
     const ComparisonPercent& p = *comparison.article;
     return fmt::format(
         "{} error of A against B: mean differs by {:.1f} %, standard deviation by {:.1f} %\n"
-        "difference {:.1f} %, agreement {:.1f} %\n",
-        name, p.mean_part, p.std_part, p.difference, 100 - p.difference);
+        "{}\n",
+        name, p.mean_part, p.std_part, p.text());
 }
 
 std::string difference_cell(const std::optional<ComparisonPercent>& p) {
@@ -142,8 +142,9 @@ std::string windows_text(const Comparison& comparison) {
         text += fmt::format("{:>6}  {:<22}{:>7}", i + 1, from, w.figures.n);
         for (const double figure : {w.figures.mean, w.figures.std, w.figures.p95})
             text += fmt::format("{:>9.3f}", figure);
-        const std::string agreement = w.difference ? fmt::format("{:.1f} %", 100 - w.difference->difference) : "-";
-        text += fmt::format("{:>12}{:>11}\n", difference_cell(w.difference), agreement);
+        const auto agreement = w.difference ? w.difference->agreement() : std::nullopt;
+        text += fmt::format("{:>12}{:>11}\n", difference_cell(w.difference),
+                            agreement ? fmt::format("{:.1f} %", *agreement) : "-");
         if (w.difference) percents.push_back(w.difference->difference);
     }
     return text + "difference: " + spread_text(std::move(percents));

@@ -1,5 +1,7 @@
 #include "study/analysis/statistics.hpp"
 
+#include <fmt/format.h>
+
 #include <unsupported/Eigen/FFT>
 
 #include <algorithm>
@@ -178,6 +180,16 @@ std::vector<double> lagged_products(std::span<const double> values, std::size_t 
     for (std::size_t lag = 0; lag < sums.size(); ++lag)
         sums[lag] = padded[lag];
     return sums;
+}
+
+std::optional<double> ComparisonPercent::agreement() const {
+    return difference <= 100 ? std::optional(100 - difference) : std::nullopt;
+}
+
+std::string ComparisonPercent::text() const {
+    const std::string told = fmt::format("difference {:.1f} %", difference);
+    const auto agrees = agreement();
+    return agrees ? told + fmt::format(", agreement {:.1f} %", *agrees) : told;
 }
 
 std::optional<ComparisonPercent> comparison_percent(const SampleStatistics& candidate,

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/core/result.hpp"
@@ -76,10 +77,15 @@ std::vector<double> lagged_products(std::span<const double> values, std::size_t 
 /// How far a candidate's error statistics are from a reference's (MODELS.md section 4, D-17):
 /// D = 50 % · (|mean_c − mean_r| / |mean_r| + |std_c − std_r| / std_r).
 struct ComparisonPercent {
-    double difference = 0;        ///< D, percent; the article's agreement is 100 − D
+    double difference = 0;        ///< D, percent
     double mean_part = 0;         ///< relative difference of the means, percent
     double std_part = 0;          ///< relative difference of the standard deviations, percent
     bool mean_near_zero = false;  ///< |mean_r| < std_r / 4: the relative difference of the means says nothing
+
+    /// The article's agreement, 100 − D, percent; nothing where D is above 100: less than no agreement does not exist.
+    [[nodiscard]] std::optional<double> agreement() const;
+    /// "difference 31.5 %, agreement 68.5 %"; without an agreement "difference 314.2 %".
+    [[nodiscard]] std::string text() const;
 };
 
 /// Mean and standard deviation of errors that are smaller are what rounding has left of zero, metres: in double

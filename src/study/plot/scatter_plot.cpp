@@ -153,8 +153,8 @@ std::string article_caption(const ScatterPanel& a, const ScatterPanel& b) {
     const auto percent = comparison_percent(*a.chosen, *b.chosen);
     if (!percent || percent->mean_near_zero)
         return quantity + ": no percentage can be given, the mean of the reference is near zero";
-    return fmt::format("{}: difference {:.1f} %, agreement {:.1f} % (mean differs by {:.1f} %, std by {:.1f} %)",
-                       quantity, percent->difference, 100 - percent->difference, percent->mean_part, percent->std_part);
+    return fmt::format("{}: {} (mean differs by {:.1f} %, std by {:.1f} %)", quantity, percent->text(),
+                       percent->mean_part, percent->std_part);
 }
 
 std::string distance_caption(const ScatterPanel& a, const ScatterPanel& b) {

@@ -167,7 +167,7 @@ TEST(Comparison, text_is_aligned_and_names_units_and_the_article_figure) {
          {"A (candidate)", "200 fixes in 200 samples, one every 1 s", "own truth", "errors about the own mean",
           "horizontal, radial", "50 % (CEP)", "< 1 s", "agreement", "Yardstick", "sample 101", "warning: real"})
         EXPECT_THAT(text, HasSubstr(word));
-    EXPECT_THAT(text, ::testing::ContainsRegex("difference [0-9]+\\.[0-9] %, agreement -?[0-9]+\\.[0-9] %"));
+    EXPECT_THAT(text, ::testing::ContainsRegex("difference [0-9]+\\.[0-9] %, agreement [0-9]+\\.[0-9] %"));
     EXPECT_EQ(text.find("nan"), std::string::npos);
     // Every row of figures ends in the same column.
     std::istringstream lines(text);
@@ -179,6 +179,21 @@ TEST(Comparison, text_is_aligned_and_names_units_and_the_article_figure) {
         }
     EXPECT_EQ(rows, 5u);
     EXPECT_EQ(text, comparison_text(*c));
+}
+
+// Errors four times as large differ by 300 %: no agreement is left that could be told, in text, JSON or windows.
+TEST(Comparison, has_no_agreement_below_zero) {
+    const auto c = compare(scattered("sim", 200, 8, true), scattered("sim", 200, 2, true),
+                           {std::nullopt, ErrorQuantity::horizontal, 100});
+    ASSERT_TRUE(c) << c.error().message;
+    ASSERT_NEAR(c->article->difference, 300, 1e-3);
+    EXPECT_FALSE(c->article->agreement());
+    const std::string text = comparison_text(*c);
+    EXPECT_THAT(text, HasSubstr("\ndifference 300.0 %\n"));
+    EXPECT_THAT(text, ::testing::Not(HasSubstr("agreement -")));
+    EXPECT_THAT(text, ::testing::Not(HasSubstr(", agreement")));
+    EXPECT_THAT(text, ::testing::ContainsRegex("[23][0-9][0-9]\\.[0-9] %          -\n"));
+    EXPECT_THAT(comparison_json(*c), HasSubstr("\"agreement_percent\": null"));
 }
 
 TEST(Comparison, json_holds_the_same_figures) {

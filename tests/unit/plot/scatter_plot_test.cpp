@@ -40,6 +40,12 @@ TEST(ScatterPlot, is_well_formed_and_names_both_clouds_and_the_percentage) {
     EXPECT_EQ(svg, scatter_plot_svg(a, b));
 }
 
+TEST(ScatterPlot, tells_no_agreement_below_zero) {
+    const std::string svg = scatter_plot_svg(normal_cloud("sim", 900, 8, 8), normal_cloud("real", 900, 2, 2));
+    EXPECT_THAT(svg, ::testing::ContainsRegex("horizontal error: difference [23][0-9][0-9]\\.[0-9] % \\(mean"));
+    EXPECT_THAT(svg, Not(HasSubstr("agreement")));
+}
+
 TEST(ScatterPlot, histograms_show_the_chosen_error_with_its_sign) {
     ScatterCloud a = normal_cloud("sim", 900, 1.5, 2);
     ScatterCloud b = normal_cloud("real", 500, 1.6, 1.9);
