@@ -31,5 +31,6 @@ Action add_power_command(CLI::App& app);
 Action add_trajectory_command(CLI::App& app);
 Action add_scenario_from_command(CLI::App& app);
 Action add_campaign_command(CLI::App& app);
+Action add_fetch_nav_command(CLI::App& app);
 
 }  // namespace skyloop::host

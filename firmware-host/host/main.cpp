@@ -25,10 +25,10 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 19> commands{"run",    "simulate",   "sky",      "check",         "compare",
+constexpr std::array<std::string_view, 20> commands{"run",    "simulate",   "sky",      "check",         "compare",
                                                     "solve",  "boards",     "decode",   "scene",         "faults",
                                                     "schema", "ctl",        "replay",   "scenario-from", "devices",
-                                                    "power",  "trajectory", "campaign", "help-pages"};
+                                                    "power",  "trajectory", "campaign", "fetch-nav",     "help-pages"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
@@ -48,7 +48,7 @@ std::vector<Action> add_commands(CLI::App& app) {
         skyloop::host::add_replay_command,     skyloop::host::add_scenario_from_command,
         skyloop::host::add_devices_command,    skyloop::host::add_power_command,
         skyloop::host::add_trajectory_command, skyloop::host::add_campaign_command,
-        skyloop::host::add_help_pages_command};
+        skyloop::host::add_fetch_nav_command,  skyloop::host::add_help_pages_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));
