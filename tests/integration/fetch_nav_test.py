@@ -5,7 +5,10 @@ import http.server
 import math
 import os
 import pathlib
+import shutil
 import socket
+import ssl
+import subprocess
 import threading
 import tomllib
 import unittest
@@ -39,13 +42,13 @@ def navigation(day, hours=range(0, 24, 2), satellites=31):
 
 
 def packed(day, **how):
-    return gzip.compress(navigation(day, **how).encode("ascii"))
+    return gzip.compress(navigation(day, **how).encode("ascii"), mtime=0)
 
 
 class Server:
     """Has `files` by path: bytes, a number (a status), a text (another address), or (bytes, how many are promised)."""
 
-    def __init__(self):
+    def __init__(self, context=None):
         self.files, self.asked = {}, []
         server = self
 
@@ -72,9 +75,11 @@ class Server:
                 pass
 
         self.http = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        if context:
+            self.http.socket = context.wrap_socket(self.http.socket, server_side=True)
         self.thread = threading.Thread(target=self.http.serve_forever, daemon=True)
         self.thread.start()
-        self.base = f"http://127.0.0.1:{self.http.server_address[1]}"
+        self.base = f"http{'s' if context else ''}://127.0.0.1:{self.http.server_address[1]}"
 
     def close(self):
         self.http.shutdown()
@@ -176,7 +181,7 @@ class FetchNav(WithServer):
         self.assertRegex(told, rf"{PATHS[0]}: (transfer closed|end of response) with \d+ bytes (remaining|missing)")
         self.assertIn(f"{PATHS[1]}: ", told)
         self.assertIn(f"{PATHS[2]}: found ''; expected a file packed by gzip", told)
-        self.assertIn(f"{PATHS[3]}: ends at 2024-03-05T14:00:00Z; expected the whole day", told)
+        self.assertIn(f"{PATHS[3]}: ends at 2024-03-05T12:00:00Z; expected the whole day", told)
         self.assertIn(f"{PATHS[4]}: ", told)
 
     def test_damaged(self):
@@ -203,6 +208,20 @@ class FetchNav(WithServer):
             nobody = f"http://127.0.0.1:{closed.getsockname()[1]}/{{year}}{{doy}}.gz"
             told = self.refused("--mirror", nobody, "--mirror", "http://nowhere.invalid/{doy}.gz")
         self.assertRegex(told, r"^skyloop: no network: 127\.0\.0\.1:\d+, nowhere\.invalid cannot be reached \(.*nowhere\.invalid.*\)\n$")
+
+    @unittest.skipUnless(shutil.which("openssl"), "openssl is not installed")
+    def test_a_stranger_by_https(self):
+        key, certificate = self.folder / "key.pem", self.folder / "cert.pem"
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate, "-days", "1",
+                        "-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1"], check=True, capture_output=True)
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+        context.load_cert_chain(certificate, key)
+        stranger = Server(context)
+        self.addCleanup(stranger.close)
+        stranger.files["/2024065.gz"] = packed(DAY)
+        told = self.refused("--mirror", stranger.base + "/{year}{doy}.gz")
+        self.assertRegex(told, r"2024065\.gz: server certificate verification failed")
+        self.assertEqual(stranger.asked, [])
 
     def test_a_cached_file_needs_no_network(self):
         self.cached.parent.mkdir(parents=True)

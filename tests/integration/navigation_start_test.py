@@ -4,11 +4,27 @@ import pathlib
 import re
 import unittest
 
+from fetch_nav_test import DAY, navigation
 from session import SHARED, open_folder, skyloop
 
 # What a run of a minute says of a file that serves nobody at the place of the run.
-REASONS = (r"no fix is to be expected at the start, \S+: of [a-z, ]+, too few satellites (have orbits then|with orbits stand above \d+ degrees)",
+REASONS = (r"no fix is to be expected: too few satellites of [a-z, ]+ (have orbits|with orbits stand above \d+ degrees at \S+ \S+) at any time of",
            r"^skyloop: --nav: \S+?:\d+(:\d+)?: found .*; ")
+
+
+def ionosphere_maps(day, hours):
+    """An IONEX file with a map of the globe at each of the hours."""
+    def headed(text, label):
+        return f"{text:60}{label}\n"
+
+    text = (headed("     1.0            IONOSPHERE MAPS     GPS", "IONEX VERSION / TYPE") + headed("    60.0 -60.0 -60.0", "LAT1 / LAT2 / DLAT")
+            + headed("  -180.0 180.0  60.0", "LON1 / LON2 / DLON") + headed("", "END OF HEADER"))
+    for hour in hours:
+        text += headed("     1", "START OF TEC MAP") + headed(f"{day:  %Y    %m    %d}{hour:6}     0     0", "EPOCH OF CURRENT MAP")
+        for latitude in (60, 0, -60):
+            text += headed(f"  {latitude:6.1f}-180.0 180.0  60.0 450.0", "LAT/LON1/LON2/DLON/H") + "  100" * 7 + "\n"
+        text += headed("     1", "END OF TEC MAP")
+    return text + headed("", "END OF FILE")
 
 
 class NavigationStart(unittest.TestCase):
@@ -45,7 +61,21 @@ class NavigationStart(unittest.TestCase):
         self.check_folder("almanac", 3)
 
     def test_samples(self):
-        self.check_folder("odd", 0)
+        self.check_folder("odd", 1)
+
+    def test_maps_of_the_ionosphere_begin_later(self):
+        temporary = open_folder()
+        self.addCleanup(temporary.cleanup)
+        folder = pathlib.Path(temporary.name)
+        (folder / "day.rnx").write_text(navigation(DAY), encoding="ascii")
+        (folder / "maps.24i").write_text(ionosphere_maps(DAY, range(6, 25)), encoding="ascii")
+        ionosphere = ["--set", "model.modern.ionosphere.truth=ionex", "--set", f"model.modern.ionosphere.maps={folder / 'maps.24i'}"]
+
+        def start(*arguments):
+            return re.search(r"^start +(\S+)", skyloop("check", "--nav", folder / "day.rnx", *arguments).stdout, re.MULTILINE).group(1)
+
+        self.assertEqual(start(), "2024-03-04T23:59:42Z")
+        self.assertEqual(start(*ionosphere), "2024-03-05T06:00:00Z")
 
 
 if __name__ == "__main__":

@@ -101,6 +101,24 @@ std::string system_list(const SolvableSky& sky) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
+constexpr std::string_view remedy = "--start moves the run, --rebase-nav the data";
+
+// Why the sky cannot be solved at the start. Where the start was chosen, it cannot at any time.
+std::string scarcity(const Scenario& scenario, const NavigationData& data, const SolvableSky& sky, GpsTime start) {
+    const bool told = scenario.run.start || scenario.run.start_now || scenario.sky.rebase_navigation;
+    const bool hidden = sky.anywhere().solvable(data, start);
+    std::string text = told ? fmt::format("no fix is to be expected at the start, {}: ", sky_time_text(start))
+                            : "no fix is to be expected: ";
+    text += fmt::format("too few satellites of {} ", system_list(sky));
+    text += hidden ? fmt::format("with orbits stand above {:g} degrees at {:.4f}, {:.4f}", sky.mask.deg(),
+                                 sky.place->latitude.deg(), sky.place->longitude.deg())
+                   : "have orbits";
+    text += told ? " then" : " at any time of the navigation data";
+    if (hidden) text += "; --at moves the antenna";
+    if (told) text += fmt::format("{}{}", hidden ? ", " : "; ", remedy);
+    return text;
+}
+
 // Where the maps of the ionosphere begin, too, of a run that takes them.
 GpsTime earliest_start(const Scenario& scenario, const NavigationData& data, GpsTime now) {
     GpsTime earliest = data.first_epoch().value_or(now);
@@ -162,22 +180,11 @@ std::vector<std::string> time_warnings(const Scenario& scenario, const Navigatio
                                        GpsTime start) {
     const auto span = data.span();
     if (!span) return {};
-    constexpr std::string_view remedy = "--start moves the run, --rebase-nav the data";
     if (start < span->first || start > span->last)
         return {fmt::format("the run starts outside the navigation data, which spans {} to {}: no fix there; {}",
                             sky_time_text(span->first), sky_time_text(span->last), remedy)};
     std::vector<std::string> warnings;
-    if (!sky.anywhere().solvable(data, start))
-        warnings.push_back(
-            fmt::format("no fix is to be expected at the start, {}: of {}, too few satellites have "
-                        "orbits then; {}",
-                        sky_time_text(start), system_list(sky), remedy));
-    else if (!sky.solvable(data, start))
-        warnings.push_back(fmt::format(
-            "no fix is to be expected at the start, {}: of {}, too few satellites with orbits stand above {:g} degrees "
-            "at {:.4f}, {:.4f} then; --at moves the antenna, {}",
-            sky_time_text(start), system_list(sky), sky.mask.deg(), sky.place->latitude.deg(),
-            sky.place->longitude.deg(), remedy));
+    if (!sky.solvable(data, start)) warnings.push_back(scarcity(scenario, data, sky, start));
     if (!scenario.run.duration) return warnings;
     const GpsTime end = advanced(start, *scenario.run.duration);
     const auto last = last_with_orbits(data, sky, end);

@@ -140,14 +140,14 @@ Result<DailyNavigation> check_daily_navigation(std::string_view packed, const st
                     fmt::format("{}: its records are of {}; expected {}", name, day_text(found), day_text(day)));
     const NavigationData data(file->records, {}, name);
     DailyNavigation result{file->records.size(), data.satellites().size(), {}, day, true};
-    for (GpsTime mark = day; mark < day + whole_day && result.whole; mark += mark_step) {
+    for (GpsTime mark = day; mark <= day + whole_day && result.whole; mark += mark_step) {
         const std::size_t satellites = gps_satellites_at(data, mark);
         if (mark == day && satellites < least_daily_satellites)
             return fail(ErrorCode::input, fmt::format("{}: has orbits of {} GPS satellites at 00:00; expected at least "
                                                       "{}",
                                                       name, satellites, least_daily_satellites));
         result.whole = satellites >= least_daily_satellites;
-        if (result.whole) result.until = mark + mark_step;
+        if (result.whole) result.until = mark;
     }
     std::vector<std::string_view> systems;
     for (const auto& [system, count] : file->counts())

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <fstream>
+#include <iterator>
 
-#include "base/core/files.hpp"
 #include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
 
@@ -17,13 +17,19 @@ using ::testing::HasSubstr;
 
 const GpsTime new_year = gps_calendar_time(2023, 1, 1, 0, 0, 0);
 
+std::string bytes_of(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
 TEST(DailyNavigation, ADayIsOneOfGpsTime) {
     EXPECT_EQ(day_of(new_year), new_year);
     EXPECT_EQ(day_of(new_year + 24h - 1ns), new_year);
     EXPECT_EQ(day_of(new_year - 1ns), new_year - 24h);
     EXPECT_EQ(day_text(new_year - 24h), "2022-12-31");
     EXPECT_EQ(parse_day("2023-01-01").value(), new_year);
-    for (const char* wrong : {"", "2023", "2023-13-01", "2023-02-29", "01.01.2023", "2023-01-01T00:00:00Z", "20230101"}) {
+    for (const char* wrong :
+         {"", "2023", "2023-13-01", "2023-02-29", "01.01.2023", "2023-01-01T00:00:00Z", "20230101"}) {
         const auto day = parse_day(wrong);
         ASSERT_FALSE(day) << wrong;
         EXPECT_EQ(day.error().message, std::string("'") + wrong + "'; expected a day such as 2023-01-01");
@@ -76,8 +82,7 @@ TEST(DailyNavigation, RealFilesOfADayAreTaken) {
     for (const int year : {2023, 2024}) {
         const std::string name = "BRDC00IGS_R_" + std::to_string(year) + "0010000_01D_MN.rnx.gz";
         SKYLOOP_REQUIRE_SHARED(file, "nav/" + name);
-        std::ifstream in(file, std::ios::binary);
-        const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+        const std::string bytes = bytes_of(file);
         const GpsTime day = gps_calendar_time(year, 1, 1, 0, 0, 0);
         const auto checked = check_daily_navigation(bytes, name, day);
         ASSERT_TRUE(checked) << checked.error().message;
@@ -96,9 +101,7 @@ TEST(DailyNavigation, RealFilesOfADayAreTaken) {
 // A single station sees but a part of the sky at any time.
 TEST(DailyNavigation, AFileOfOneStationIsNone) {
     SKYLOOP_REQUIRE_SHARED(file, "nav/ESBC00DNK_R_20201770000_01D_MN.rnx.gz");
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    const auto checked = check_daily_navigation(bytes, "esbc", gps_calendar_time(2020, 6, 25, 0, 0, 0));
+    const auto checked = check_daily_navigation(bytes_of(file), "esbc", gps_calendar_time(2020, 6, 25, 0, 0, 0));
     ASSERT_FALSE(checked);
     EXPECT_THAT(checked.error().message, ::testing::MatchesRegex("esbc: has orbits of [0-9]+ GPS satellites at 00:00; "
                                                                  "expected at least 24"));

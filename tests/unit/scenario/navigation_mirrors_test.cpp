@@ -25,7 +25,8 @@ TEST(NavigationMirrors, TheListOfTheProgramCanBeUsed) {
     for (const NavigationMirror& mirror : *mirrors) {
         names.push_back(mirror.name);
         for (const std::string& address : mirror.addresses)
-            EXPECT_THAT(address, testing::AllOf(testing::StartsWith("https://"), HasSubstr("{year}"), HasSubstr("{doy}")));
+            EXPECT_THAT(address,
+                        testing::AllOf(testing::StartsWith("https://"), HasSubstr("{year}"), HasSubstr("{doy}")));
     }
     EXPECT_THAT(names, testing::ElementsAre("bkg", "ign", "cddis"));
 }
@@ -36,7 +37,8 @@ TEST(NavigationMirrors, MistakesAreToldByLine) {
     EXPECT_THAT(mistakes_of_mirrors("[[mirror]]\nname = \"a\"\naddresses = [\"ftp://a\"]"),
                 HasSubstr("m.toml:3:13: mirror.addresses: 'ftp://a'; expected an address"));
     EXPECT_THAT(mistakes_of_mirrors("[[mirror]]\nname = \"a\""), HasSubstr("expected name and addresses"));
-    EXPECT_THAT(mistakes_of_mirrors("[[mirror]]\nname = \"a\"\naddresses = [\"https://a\"]\nurl = 1"), HasSubstr("url"));
+    EXPECT_THAT(mistakes_of_mirrors("[[mirror]]\nname = \"a\"\naddresses = [\"https://a\"]\nurl = 1"),
+                HasSubstr("url"));
 }
 
 TEST(NavigationMirrors, TheFirstFolderThatHasTheListWins) {
