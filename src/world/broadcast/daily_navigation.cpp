@@ -21,8 +21,10 @@ namespace {
 using std::chrono::hours;
 
 constexpr Nanoseconds whole_day = hours(24);
-// GPS records come with a toe every two hours (IS-GPS-200, 20.3.4.4).
+// GPS records come with a toe every two hours (IS-GPS-200, 20.3.4.4). Each of a single station's satellites has one in
+// some of them, of all stations' in every.
 constexpr Nanoseconds mark_step = hours(2);
+constexpr Seconds mark_reach{3600};
 
 std::string day_of_year_text(GpsTime day) {
     return fmt::format("{:03}", static_cast<int>(day_of_year(gps_calendar(day))));
@@ -138,16 +140,16 @@ Result<DailyNavigation> check_daily_navigation(std::string_view packed, const st
     if (const GpsTime found = main_day(file->records); found != day)
         return fail(ErrorCode::input,
                     fmt::format("{}: its records are of {}; expected {}", name, day_text(found), day_text(day)));
-    const NavigationData data(file->records, {}, name);
+    const NavigationData data(file->records, {}, name, {EphemerisRule::nearest, mark_reach});
     DailyNavigation result{file->records.size(), data.satellites().size(), {}, day, true};
-    for (GpsTime mark = day; mark <= day + whole_day && result.whole; mark += mark_step) {
+    for (GpsTime mark = day; mark < day + whole_day && result.whole; mark += mark_step) {
         const std::size_t satellites = gps_satellites_at(data, mark);
         if (mark == day && satellites < least_daily_satellites)
             return fail(ErrorCode::input, fmt::format("{}: has orbits of {} GPS satellites at 00:00; expected at least "
                                                       "{}",
                                                       name, satellites, least_daily_satellites));
         result.whole = satellites >= least_daily_satellites;
-        if (result.whole) result.until = mark;
+        if (result.whole) result.until = mark + mark_step;
     }
     std::vector<std::string_view> systems;
     for (const auto& [system, count] : file->counts())

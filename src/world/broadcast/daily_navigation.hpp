@@ -43,8 +43,8 @@ std::string address_of_day(std::string_view pattern, GpsTime day);
 Result<std::vector<NavigationMirror>> chosen_mirrors(std::span<const NavigationMirror> known,
                                                      std::span<const std::string> wanted);
 
-/// How many GPS satellites a file has orbits of, all day long: as many as the system has slots (GPS SPS Performance
-/// Standard, 5th edition, 2020, section 3.2).
+/// How many GPS satellites a file has orbits of, within an hour of each even hour of the day: as many as the system has
+/// slots (GPS SPS Performance Standard, 5th edition, 2020, section 3.2).
 inline constexpr std::size_t least_daily_satellites = 24;
 /// Bytes of a packed file beyond which it is none; those of 2024 have about one million.
 inline constexpr std::size_t most_daily_bytes = std::size_t{64} << 20;

@@ -73,7 +73,7 @@ TEST(LoadWorldNavigation, ReadsAlmanacs) {
 // Its week is 862 of 1024: 2016 or 2036.
 TEST(LoadWorldNavigation, AnAlmanacIsNotOfTheFuture) {
     SKYLOOP_REQUIRE_SHARED(folder, "nav/almanac");
-    SKYLOOP_REQUIRE_SHARED(nav, "nav/brdc0910.09n");
+    SKYLOOP_REQUIRE_SHARED(nav, "nav/brdc0910.09g");
     const GpsTime late_2026 = to_gps_time(2447, 0.0);
     const auto alone = load_navigation(with_navigation(folder / "yuma.txt"), late_2026);
     ASSERT_TRUE(alone) << alone.error().message;
