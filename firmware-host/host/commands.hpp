@@ -32,5 +32,6 @@ Action add_trajectory_command(CLI::App& app);
 Action add_scenario_from_command(CLI::App& app);
 Action add_fit_command(CLI::App& app);
 Action add_campaign_command(CLI::App& app);
+Action add_fetch_nav_command(CLI::App& app);
 
 }  // namespace skyloop::host

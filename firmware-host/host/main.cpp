@@ -25,10 +25,10 @@ namespace {
 
 using skyloop::host::Action;
 
-constexpr std::array<std::string_view, 20> commands{"run",     "simulate", "sky",        "check",         "compare",
-                                                    "solve",   "boards",   "decode",     "scene",         "faults",
-                                                    "schema",  "ctl",      "replay",     "scenario-from", "fit",
-                                                    "devices", "power",    "trajectory", "campaign",      "help-pages"};
+constexpr std::array<std::string_view, 21> commands{
+    "run",    "simulate", "sky",    "check",      "compare",  "solve",     "boards",
+    "decode", "scene",    "faults", "schema",     "ctl",      "replay",    "scenario-from",
+    "fit",    "devices",  "power",  "trajectory", "campaign", "fetch-nav", "help-pages"};
 
 // CLI11 does not know which words may be meant; this says it in one line.
 int refuse_command(std::string_view word) {
@@ -39,16 +39,17 @@ int refuse_command(std::string_view word) {
 
 std::vector<Action> add_commands(CLI::App& app) {
     const std::array<Action (*)(CLI::App&), commands.size()> add{
-        skyloop::host::add_run_command,      skyloop::host::add_simulate_command,
-        skyloop::host::add_sky_command,      skyloop::host::add_check_command,
-        skyloop::host::add_compare_command,  skyloop::host::add_solve_command,
-        skyloop::host::add_boards_command,   skyloop::host::add_decode_command,
-        skyloop::host::add_scene_command,    skyloop::host::add_faults_command,
-        skyloop::host::add_schema_command,   skyloop::host::add_ctl_command,
-        skyloop::host::add_replay_command,   skyloop::host::add_scenario_from_command,
-        skyloop::host::add_fit_command,      skyloop::host::add_devices_command,
-        skyloop::host::add_power_command,    skyloop::host::add_trajectory_command,
-        skyloop::host::add_campaign_command, skyloop::host::add_help_pages_command};
+        skyloop::host::add_run_command,       skyloop::host::add_simulate_command,
+        skyloop::host::add_sky_command,       skyloop::host::add_check_command,
+        skyloop::host::add_compare_command,   skyloop::host::add_solve_command,
+        skyloop::host::add_boards_command,    skyloop::host::add_decode_command,
+        skyloop::host::add_scene_command,     skyloop::host::add_faults_command,
+        skyloop::host::add_schema_command,    skyloop::host::add_ctl_command,
+        skyloop::host::add_replay_command,    skyloop::host::add_scenario_from_command,
+        skyloop::host::add_fit_command,       skyloop::host::add_devices_command,
+        skyloop::host::add_power_command,     skyloop::host::add_trajectory_command,
+        skyloop::host::add_campaign_command,  skyloop::host::add_fetch_nav_command,
+        skyloop::host::add_help_pages_command};
     std::vector<Action> actions;
     for (const auto add_command : add)
         actions.push_back(add_command(app));

@@ -78,7 +78,8 @@ Result<std::vector<ScenarioChange>> changes_of(const RunOptions& options) {
     };
     std::string files, outputs;
     for (const std::string& file : options.nav)
-        files += path_text(file, options.scenario) + ", ";
+        files +=
+            (file == automatic_navigation_word ? quoted_value(file).toml : path_text(file, options.scenario)) + ", ";
     for (const std::string& uri : options.outputs)
         outputs += fmt::format("{{ to = {} }}, ", quoted_value(uri).toml);
     add("--nav", "sky.navigation", !options.nav.empty(), "[" + files + "]");
@@ -189,7 +190,10 @@ Result<Scenario> scenario_with(const std::string& file, const std::vector<std::s
 void add_place_options(CLI::App& command, RunOptions& options) {
     command.add_option("--at", options.at,
                        "Stand still there: LAT,LON[,HEIGHT] in degrees and metres above the ellipsoid");
-    command.add_option("--nav", options.nav, "RINEX navigation file or almanac; repeatable; without it a nominal sky")
+    command
+        .add_option("--nav", options.nav,
+                    "RINEX navigation file or almanac, repeatable; or auto: the file of fetch-nav's cache; "
+                    "without it a nominal sky")
         ->allow_extra_args(false);
     options.keys.add_flag(command, "--rebase-nav", "sky.rebase_navigation", "true",
                           "Move the navigation data to the start time, keeping its time of day");

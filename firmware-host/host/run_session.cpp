@@ -57,6 +57,8 @@ GpsTime wall_clock() {
 RunSession::RunSession(const Messages& messages, Assembly& assembly) : messages_(messages), assembly_(assembly) {
     for (const std::string& detail : assembly.details)
         messages.detail(detail);
+    for (const std::string& note : assembly.notes)
+        messages.info(note);
     messages.warnings(assembly.warnings);
 }
 

@@ -61,6 +61,8 @@ Result<World> make_world(const Scenario& asked, const SkyOptions& options, const
         if (const auto place = scene_start(scenario, start); place && !map)
             if (auto doubt = doubt_of_height(*loaded->scene, *place)) warnings.push_back(std::move(*doubt));
     }
+    for (const std::string& note : navigation->notes)
+        messages.info(note);
     messages.warnings(warnings);
     SimulationSetup setup{std::move(navigation->source), geoid.get(), start, data_folders(), 0, loaded->scene};
     // The receiver below reports a board that does not exist.

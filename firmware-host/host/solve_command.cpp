@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -12,10 +13,12 @@
 #include "base/geo/local_frame.hpp"
 #include "base/time/utc_time.hpp"
 #include "commands.hpp"
+#include "data_folders.hpp"
 #include "receiver/pvt/navigation_engine.hpp"
 #include "run/emulator/navigation_files.hpp"
 #include "run/emulator/run_files.hpp"
 #include "run_session.hpp"
+#include "world/broadcast/daily_navigation.hpp"
 #include "world/gnss/navigation_data.hpp"
 #include "world/rinex/observation_reader.hpp"
 #include "world/rinex/precise_orbit_file.hpp"
@@ -118,12 +121,29 @@ std::optional<TimeSpan> span_of(const PreciseOrbits& orbits) {
     return span;
 }
 
+// The files of --nav; in the place of "auto" those of the cache, of each day of the observations.
+Result<std::vector<std::filesystem::path>> navigation_of(const SolveOptions& options, const ObservationFile& file) {
+    std::vector<std::filesystem::path> files(options.nav.begin(), options.nav.end());
+    if (std::find(options.nav.begin(), options.nav.end(), automatic_navigation_word) == options.nav.end()) return files;
+    if (files.size() > 1) return fail(ErrorCode::usage, "--nav auto: has files beside it; expected either");
+    files.clear();
+    const GpsTime last = file.epochs.back().receive_time;
+    for (GpsTime day = day_of(file.epochs.front().receive_time); day <= last; day += std::chrono::days(1)) {
+        const auto cached = cached_navigation(data_folders(), day);
+        if (!cached) return fail(cached.error());
+        files.push_back(*cached);
+    }
+    return files;
+}
+
 // The broadcast records for the span of the observations; none without a file.
 Result<std::unique_ptr<NavigationSource>> broadcast_of(const SolveOptions& options, const ObservationFile& file,
                                                        const Messages& messages) {
     if (options.nav.empty()) return std::make_unique<NavigationData>(std::vector<Ephemeris>{}, std::nullopt, "nothing");
     Scenario scenario;
-    scenario.sky.navigation.assign(options.nav.begin(), options.nav.end());
+    auto files = navigation_of(options, file);
+    if (!files) return fail(files.error());
+    scenario.sky.navigation = std::move(*files);
     std::vector<std::string> warnings;
     auto data = read_navigation_files(scenario, file.epochs.front().receive_time, warnings);
     if (!data) return fail(data.error());
@@ -302,7 +322,8 @@ Action add_solve_command(CLI::App& app) {
         ->add_option("OBSERVATIONS", options->observations,
                      "RINEX 2, 3 or 4 observation file, compact (.crx) and packed (.gz, .Z, .zip, …) or not")
         ->required();
-    command->add_option("--nav", options->nav, "RINEX navigation file; repeatable")->allow_extra_args(false);
+    command->add_option("--nav", options->nav, "RINEX navigation file, repeatable; or auto: of the cache of fetch-nav")
+        ->allow_extra_args(false);
     command->add_option("--sp3", options->sp3, "Precise orbits and clocks in place of the broadcast ones");
     auto* base = command->add_option("--base", options->base,
                                      "RINEX observation file of a reference station: differential and RTK solutions");

@@ -84,7 +84,7 @@ set(CPACK_DEBIAN_DATA_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_DATA_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_DATA_DESCRIPTION "profiles, models and scenarios of the GNSS receiver emulator skyloop
 Profiles of receivers, autopilots and adapters, the geoid EGM96, the tables of
-NeQuick-G, and example scenarios, for the program and the library.")
+NeQuick-G, mirrors of navigation files, and example scenarios, for the program and the library.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libskyloop0)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)

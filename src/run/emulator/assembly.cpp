@@ -327,6 +327,18 @@ std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
     return folders;
 }
 
+namespace {
+
+// What is known once the orbits are: the start, and which files have them.
+void take_navigation(const LoadedNavigation& loaded, Scenario& scenario, Assembly& assembly) {
+    assembly.warnings.insert(assembly.warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
+    assembly.notes = loaded.notes;
+    assembly.start = loaded.start;
+    scenario.sky.navigation = loaded.files;
+}
+
+}  // namespace
+
 Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const RunMode& mode) {
     Scenario scenario = asked;
     Assembly assembly;
@@ -334,8 +346,7 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
     if (!navigation) return fail(navigation.error());
     assembly.geoid = find_geoid(data, navigation->warnings);
     assembly.warnings = scenario_warnings(scenario, assembly.geoid.get());
-    assembly.warnings.insert(assembly.warnings.end(), navigation->warnings.begin(), navigation->warnings.end());
-    assembly.start = navigation->start;
+    take_navigation(*navigation, scenario, assembly);
     const auto track = load_track(scenario, assembly.geoid.get(), assembly.start);
     if (!track) return fail(track.error());
     if (track->end && (!scenario.run.duration || *track->end < advanced(assembly.start, *scenario.run.duration)))

@@ -77,6 +77,7 @@ struct Assembly {
     std::vector<std::string> track_details;  ///< what was found in its file, a line each
     LoadedScene scene;                       ///< what stands around; its warnings are among those below
     std::vector<std::string> warnings;
+    std::vector<std::string> notes{};           ///< what was chosen among others
     std::optional<DeadlineGrants> deadlines{};  ///< that its loop was given; nothing: it has none to keep
     std::vector<OutputSummary> outputs{};       ///< of the run, once it is over
     std::optional<CasterSummary> caster{};      ///< the same; nothing: there was none
@@ -93,15 +94,18 @@ Result<Assembly> assemble(const Scenario& scenario, const DataFolders& data, con
 /// @param scene digest of the files of the scene; 0: there are none
 std::string scenario_digest(const Scenario& scenario, const DataFolders& data, GpsTime start, std::uint64_t scene = 0);
 
-/// Broadcast orbits for a scenario: its files, or the nominal sky, and when its run begins. Without a start
-/// of its own a run with files begins when four satellites that its receivers solve with first have orbits. Fails with
-/// `input` for files that hold nothing to use, with `usage` for settings that contradict each other.
+/// Broadcast orbits for a scenario: its files, that of the cache, or the nominal sky, and when its run begins. Without
+/// a start of its own a run with files begins when enough satellites that its receivers solve with first have orbits
+/// and stand above the mask where the run begins. Fails with `input` for files that hold nothing to use, with `usage`
+/// for settings that contradict each other.
 /// @param now the wall clock, GPST
-/// @param folders where the boards are; one that is not there counts as one that tracks every system
+/// @param folders where the boards are, one that is not there counts as one that tracks every system, and the cache
 struct LoadedNavigation {
-    std::unique_ptr<NavigationSource> source;
-    GpsTime start;  ///< of the run
-    std::vector<std::string> warnings;
+    std::unique_ptr<NavigationSource> source{};
+    GpsTime start{};  ///< of the run
+    std::vector<std::string> warnings{};
+    std::vector<std::string> notes{};            ///< what was chosen among others
+    std::vector<std::filesystem::path> files{};  ///< that were read
 };
 Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, const DataFolders& folders = {});
 

@@ -8,9 +8,10 @@
 #include "base/core/files.hpp"
 
 #include "base/time/utc_time.hpp"
+#include "detail/navigation_start.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/navigation_files.hpp"
-#include "run/scenario/board_files.hpp"
+#include "world/broadcast/daily_navigation.hpp"
 #include "world/gnss/foreign_records.hpp"
 #include "world/gnss/navigation_data.hpp"
 #include "world/gnss/nominal_sky.hpp"
@@ -35,16 +36,21 @@ void add_ionosphere(BroadcastIonosphere& all, const BroadcastIonosphere& more) {
     if (!all.galileo) all.galileo = more.galileo;
 }
 
-// A RINEX file or an almanac. @param near resolves the weeks of an almanac
-Result<NavigationFile> read_file(const std::filesystem::path& path, GpsTime near) {
-    const auto text = read_text_file(path);
-    if (!text) return fail(text.error());
-    if (!is_almanac(*text)) return read_navigation(*text, path.string());
-    auto almanac = read_almanac(*text, path.string(), near);
-    if (!almanac) return fail(almanac.error());
-    NavigationFile file;
-    file.records.assign(almanac->begin(), almanac->end());
-    return file;
+// The middle of the records; those of a RINEX file know their week.
+std::optional<GpsTime> middle_toe(const std::vector<Ephemeris>& records) {
+    if (records.empty()) return std::nullopt;
+    std::vector<GpsTime> times;
+    for (const Ephemeris& record : records)
+        times.push_back(toe_of(record));
+    const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+    std::nth_element(times.begin(), middle, times.end());
+    return *middle;
+}
+
+// Weeks of an almanac may be reduced modulo 1024. Where nobody tells the time of the run, it is not of the future.
+GpsTime time_of_almanacs(const Scenario& scenario, GpsTime now) {
+    constexpr Nanoseconds half_rollover = std::chrono::weeks(511);
+    return scenario.run.start.value_or(scenario.run.start_now ? now : now - half_rollover);
 }
 
 // The article's reference system is GPS (MODELS.md, R-03), which QZSS extends; with its sensor model, and those that it
@@ -103,13 +109,26 @@ void warn_of_foreign_records(const std::vector<DroppedRecord>& dropped, std::vec
 
 Result<ReadRecords> read_all(const Scenario& scenario, GpsTime near, std::vector<std::string>& warnings) {
     ReadRecords all;
+    std::vector<std::pair<std::string, std::string>> almanacs;  // name, text
     for (const std::filesystem::path& path : scenario.sky.navigation) {
-        auto file = read_file(path, near);
+        all.description += (all.description.empty() ? "" : " ") + path.filename().string();
+        auto text = read_text_file(path);
+        if (!text) return fail(text.error());
+        if (is_almanac(*text)) {
+            almanacs.emplace_back(path.string(), std::move(*text));
+            continue;
+        }
+        const auto file = read_navigation(*text, path.string());
         if (!file) return fail(file.error());
         warnings.insert(warnings.end(), file->warnings.begin(), file->warnings.end());
         all.records.insert(all.records.end(), file->records.begin(), file->records.end());
         add_ionosphere(all.ionosphere, file->ionosphere);
-        all.description += (all.description.empty() ? "" : " ") + path.filename().string();
+    }
+    near = middle_toe(all.records).value_or(near);
+    for (const auto& [name, text] : almanacs) {
+        const auto records = read_almanac(text, name, near);
+        if (!records) return fail(records.error());
+        all.records.insert(all.records.end(), records->begin(), records->end());
     }
     if (const Result<void> kept = keep_constellations(all, scenario); !kept) return fail(kept.error());
     warn_of_foreign_records(drop_foreign_records(all.records), warnings);
@@ -133,67 +152,6 @@ Result<void> check_end(const RunSettings& run, GpsTime start) {
                                               format_utc(to_utc(start, LeapSeconds::announced()), 0)));
 }
 
-std::string span_text(const TimeSpan& span) {
-    const LeapSeconds& leap = LeapSeconds::announced();
-    return fmt::format("{} to {}", format_utc(to_utc(span.first, leap), 0), format_utc(to_utc(span.last, leap), 0));
-}
-
-void warn_outside(const Scenario& scenario, const LoadedNavigation& loaded, std::vector<std::string>& warnings) {
-    const auto span = loaded.source->span();
-    if (!span) return;
-    const GpsTime end = scenario.run.duration ? advanced(loaded.start, *scenario.run.duration) : loaded.start;
-    if (loaded.start >= span->first && end <= span->last) return;
-    warnings.push_back(fmt::format(
-        "the run {} the navigation data, which spans {}: no fix there; --start moves the run, --rebase-nav the data",
-        loaded.start < span->first || loaded.start > span->last ? "starts outside" : "outlasts", span_text(*span)));
-}
-
-// Those that the receivers of the run solve with; SBAS adds to them and is no solution alone. Where a board is not
-// found, which is told when it is opened, all.
-std::set<Constellation> solving_constellations(const Scenario& scenario, const DataFolders& data) {
-    using enum Constellation;
-    std::set<Constellation> solving;
-    for (const ReceiverEntry& entry : scenario.receivers) {
-        std::vector<Constellation> tracked = entry.constellations;
-        if (tracked.empty()) {
-            const auto board = find_board(entry.board, board_folders(data));
-            tracked = board ? board->constellations : std::vector{gps, galileo, beidou, qzss, glonass, navic};
-        }
-        solving.insert(tracked.begin(), tracked.end());
-    }
-    solving.erase(sbas);
-    return solving;
-}
-
-// From the first record on, when four satellites of these systems first have orbits. A record that lies alone before
-// all others would make a run begin where nothing can be solved. Where four never have: the first record.
-std::optional<GpsTime> first_solvable(const NavigationData& data, const std::set<Constellation>& systems) {
-    constexpr std::ptrdiff_t enough = 4;
-    const std::optional<GpsTime> first = data.first_epoch();
-    if (!first) return std::nullopt;
-    const bool before_toe = data.selection().rule == EphemerisRule::nearest;
-    std::vector<SatelliteId> satellites = data.satellites();
-    std::erase_if(satellites, [&](SatelliteId id) { return !systems.contains(id.constellation); });
-    std::vector<GpsTime> beginnings;
-    for (const SatelliteRecords& satellite : data.records())
-        for (const Ephemeris& r : satellite.records)
-            beginnings.push_back(std::max(
-                *first, toe_of(r) - (before_toe ? to_nanoseconds(data.selection().validity_of(r)) : Nanoseconds(0))));
-    std::sort(beginnings.begin(), beginnings.end());
-    const auto found = std::find_if(beginnings.begin(), beginnings.end(), [&](GpsTime t) {
-        return std::count_if(satellites.begin(), satellites.end(),
-                             [&](SatelliteId id) { return data.ephemeris(id, t).has_value(); }) >= enough;
-    });
-    return found == beginnings.end() ? first : *found;
-}
-
-// The instant at which a run with these data begins.
-GpsTime start_of(const Scenario& scenario, const NavigationData& data, const DataFolders& folders, GpsTime now) {
-    if (scenario.run.start) return *scenario.run.start;
-    if (scenario.run.start_now || scenario.sky.rebase_navigation) return now;
-    return first_solvable(data, solving_constellations(scenario, folders)).value_or(now);
-}
-
 // The article's sky is GPS alone, and its nominal one has no others.
 std::vector<Constellation> nominal_constellations(const Scenario& scenario) {
     if (scenario.sky.constellations.empty() && scenario.model.sensor_model) return {Constellation::gps};
@@ -205,7 +163,8 @@ Result<LoadedNavigation> load_nominal(const Scenario& scenario, GpsTime now) {
         return fail(ErrorCode::usage, told_place(scenario, "sky.rebase_navigation", "--rebase-nav") +
                                           "moves navigation data, but there is none; expected some, by sky.navigation "
                                           "or --nav");
-    LoadedNavigation loaded{std::make_unique<NominalSky>(nominal_constellations(scenario)), {}, {}};
+    LoadedNavigation loaded;
+    loaded.source = std::make_unique<NominalSky>(nominal_constellations(scenario));
     loaded.start = scenario.run.start.value_or(now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     return loaded;
@@ -220,22 +179,70 @@ Result<NavigationData> read_navigation_files(const Scenario& scenario, GpsTime n
     return NavigationData(all->records, all->ionosphere, all->description, selection_of(scenario));
 }
 
-Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, const DataFolders& folders) {
-    if (scenario.sky.navigation.empty()) return load_nominal(scenario, now);
+namespace {
+
+Result<LoadedNavigation> load_files(const Scenario& scenario, GpsTime now, const DataFolders& folders) {
     LoadedNavigation loaded;
-    auto read = read_navigation_files(scenario, scenario.run.start.value_or(now), loaded.warnings);
+    auto read = read_navigation_files(scenario, time_of_almanacs(scenario, now), loaded.warnings);
     if (!read) return fail(read.error());
     NavigationData& data = *read;
-    loaded.start = start_of(scenario, data, folders, now);
+    const SolvableSky sky = SolvableSky::of(scenario, folders);
+    loaded.start = start_of(scenario, data, sky, now);
     if (const auto checked = check_end(scenario.run, loaded.start); !checked) return fail(checked.error());
     if (scenario.sky.rebase_navigation) {
         auto moved = rebased(data, loaded.start);
         if (!moved) return fail(moved.error());
         data = std::move(*moved);
     }
+    for (std::string& warning : time_warnings(scenario, data, sky, loaded.start))
+        loaded.warnings.push_back(std::move(warning));
+    loaded.files = scenario.sky.navigation;
     loaded.source = std::make_unique<NavigationData>(std::move(data));
-    warn_outside(scenario, loaded, loaded.warnings);
     return loaded;
+}
+
+// The file of the start's day where it has orbits then, else the nominal sky; it is told which.
+Result<LoadedNavigation> load_automatic(const Scenario& asked, GpsTime now, const DataFolders& folders) {
+    if (asked.sky.rebase_navigation)
+        return fail(ErrorCode::usage, told_place(asked, "sky.rebase_navigation", "--rebase-nav") +
+                                          "moves navigation data, and \"auto\" takes those of the run's own day; "
+                                          "expected one of them");
+    Scenario scenario = asked;
+    scenario.run.start = asked.run.start.value_or(now);
+    const auto file = cached_navigation(folders, *scenario.run.start);
+    std::string why = file ? "" : file.error().message;
+    if (file) {
+        scenario.sky.navigation = {*file};
+        auto loaded = load_files(scenario, now, folders);
+        if (!loaded) return loaded;
+        loaded->notes.push_back(fmt::format("navigation: {}, of the cache", loaded->source->description()));
+        const auto span = loaded->source->span();
+        if (span && *scenario.run.start <= span->last) return loaded;
+        why = fmt::format("{}: ends before the start of the run; skyloop fetch-nav gets what has come since",
+                          file->string());
+    }
+    auto loaded = load_nominal(asked, now);
+    if (loaded) loaded->warnings.push_back("the sky is the nominal one: " + why);
+    return loaded;
+}
+
+}  // namespace
+
+Result<std::filesystem::path> cached_navigation(const DataFolders& folders, GpsTime time) {
+    const GpsTime day = day_of(time);
+    const std::string remedy = fmt::format("skyloop fetch-nav --date {} gets it", day_text(day));
+    if (folders.cache.empty())
+        return fail(ErrorCode::outside, "no cache of navigation files: neither XDG_CACHE_HOME nor HOME names a folder");
+    std::filesystem::path file = cached_navigation_path(folders.cache, day);
+    std::error_code absent;
+    if (std::filesystem::exists(file, absent)) return file;
+    return fail(ErrorCode::outside, fmt::format("{}: no navigation file of this day; {}", file.string(), remedy));
+}
+
+Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, const DataFolders& folders) {
+    if (scenario.sky.automatic_navigation) return load_automatic(scenario, now, folders);
+    if (scenario.sky.navigation.empty()) return load_nominal(scenario, now);
+    return load_files(scenario, now, folders);
 }
 
 }  // namespace skyloop::inline run

@@ -82,8 +82,12 @@ struct RunSettings {
     [[nodiscard]] std::uint64_t seed_of_receivers() const { return receiver_seed.value_or(seed); }
 };
 
+/// In the place of navigation files: those of the day, whatever they are called.
+inline constexpr std::string_view automatic_navigation_word = "auto";
+
 struct SkySettings {
     std::vector<std::filesystem::path> navigation;  ///< empty: the nominal sky
+    bool automatic_navigation = false;              ///< that of the start's day in the cache, where there is one
     bool rebase_navigation = false;                 ///< move the data to the start time, keeping its time of day
     std::vector<Constellation> constellations;      ///< empty: all of the data; for sensor models gps and qzss
     std::optional<Angle> elevation_mask;            ///< nothing: the board's; of sensor models 5°

@@ -110,7 +110,7 @@ namespace {
 
 void read_run_keys(TableReader& run, RunSettings& settings) {
     const auto start = run.utc("start", {"when the run begins: ISO 8601 in UTC, or \"now\"",
-                                         "now; with navigation data when four satellites first have orbits"});
+                                         "now; with navigation files when their satellites first suffice for a fix"});
     if (start == "now") {
         settings.start_now = true;
     } else if (start) {
@@ -134,10 +134,15 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
 void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
     std::vector<std::string> files;
     sky.text_or_texts("navigation", files,
-                      {"navigation files: RINEX 2, 3 or 4, YUMA or SEM almanac, packed too", "nominal sky"});
+                      {"navigation files: RINEX 2, 3 or 4, YUMA or SEM almanac, packed too; \"auto\": the file of the "
+                       "start's day that `skyloop fetch-nav` has put into the cache, else the nominal sky",
+                       "nominal sky"});
+    settings.automatic_navigation = std::find(files.begin(), files.end(), automatic_navigation_word) != files.end();
+    if (settings.automatic_navigation && files.size() > 1)
+        sky.mistake("navigation", "has files beside \"auto\"; expected either");
     for (const std::string& file : files) {
         if (file.empty()) sky.mistake("navigation", "is empty; expected the path of a file");
-        settings.navigation.push_back(folder / file);
+        if (!settings.automatic_navigation) settings.navigation.push_back(folder / file);
     }
     sky.boolean("rebase_navigation", settings.rebase_navigation,
                 "move the data by whole days to the start time, keeping its time of day");

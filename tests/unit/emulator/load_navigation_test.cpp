@@ -9,6 +9,7 @@
 #include "support/run_parts.hpp"
 #include "unit/rinex/navigation_text.hpp"
 #include "unit/transport/temporary_folder.hpp"
+#include "world/sky/observe_sky.hpp"
 
 namespace skyloop {
 namespace {
@@ -19,6 +20,7 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
+using testing::StartsWith;
 
 const GpsTime data_day = to_gps_time(2304, 2 * 86400);  // 2024-03-05, GPST
 const GpsTime wall_now = to_gps_time(2400, 3 * 3600.0);
@@ -66,7 +68,7 @@ protected:
     static LoadedNavigation load(const Scenario& scenario) {
         auto loaded = load_navigation(scenario, wall_now);
         EXPECT_TRUE(loaded) << loaded.error().message;
-        return loaded ? std::move(*loaded) : LoadedNavigation{std::make_unique<NominalConstellation>(), {}, {}};
+        return loaded ? std::move(*loaded) : LoadedNavigation{std::make_unique<NominalConstellation>()};
     }
     // The time of day of the record that serves G01 at 03:30.
     static Nanoseconds record_at_half_past_three(const Scenario& scenario) {
@@ -179,12 +181,22 @@ TEST_F(LoadNavigation, BeginsWhereFourSatellitesFirstHaveOrbits) {
     EXPECT_THAT(of_files, IsEmpty());
 }
 
+// Those of the nominal constellation above ten degrees.
+std::vector<int> visible_satellites(const Geodetic& place, GpsTime time) {
+    std::vector<int> numbers;
+    for (const SatelliteInView& s : observe_sky({time, to_ecef(place), {}, place}, NominalConstellation()).satellites)
+        if (s.elevation > Angle::degrees(10)) numbers.push_back(s.id.number);
+    return numbers;
+}
+
 // Four of QZSS that come before all others are enough for a receiver that tracks them.
 TEST_F(LoadNavigation, BeginsWithSystemsThatItsReceiversSolveWith) {
     std::string text = nominal_records();
-    for (const int number : {3, 4, 5, 6}) {
-        KeplerEphemeris early = NominalConstellation().record({Constellation::gps, number}, data_day - 8h).value();
-        early.satellite = {Constellation::qzss, number};
+    const std::vector<int> visible = visible_satellites(FixedSettings().at, data_day - 8h);
+    ASSERT_GE(visible.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+        KeplerEphemeris early = NominalConstellation().record({Constellation::gps, visible[i]}, data_day - 8h).value();
+        early.satellite = {Constellation::qzss, static_cast<int>(i) + 3};
         text += rinex_record(early);
     }
     std::ofstream(folder_ / "early.rnx") << text;
@@ -199,6 +211,80 @@ TEST_F(LoadNavigation, BeginsWithSystemsThatItsReceiversSolveWith) {
     EXPECT_EQ(start("[[receiver]]\nconstellations = [\"gps\"]\n"), data_day);
     EXPECT_EQ(start("[[receiver]]\nconstellations = [\"galileo\"]\n"), data_day - 8h) << "four never have orbits";
     EXPECT_EQ(start("[[receiver]]\nboard = \"mtk3339\"\n", test::emulator_data()), data_day);
+}
+
+// Satellites below the horizon are no beginning, wherever their orbits are known.
+TEST_F(LoadNavigation, BeginsWhereItsSatellitesStandAboveTheMask) {
+    const std::vector<int> hidden = visible_satellites(Geodetic::degrees(-46.5, -149.3, 0), data_day - 8h);
+    ASSERT_GE(hidden.size(), 4u);
+    std::string text = nominal_records();
+    for (const int number : hidden)
+        text += rinex_record(NominalConstellation().record({Constellation::gps, number}, data_day - 8h).value());
+    std::ofstream(folder_ / "hidden.rnx") << text;
+    const std::string sky = "[sky]\nnavigation = \"" + (folder_ / "hidden.rnx").string() + "\"\n";
+    const auto place = [](double lat, double lon) {
+        return fmt::format("[trajectory]\nkind = \"fixed\"\nat = [{}, {}, 0]\n", lat, lon);
+    };
+    EXPECT_GT(load(emulator_scenario(sky)).start, data_day - 8h);
+    EXPECT_LE(load(emulator_scenario(sky)).start, data_day);
+    EXPECT_EQ(load(emulator_scenario(sky + place(-46.5, -149.3))).start, data_day - 8h) << "on the other side";
+    const LoadedNavigation never = load(emulator_scenario(sky + "elevation_mask_deg = 89\n"));
+    EXPECT_EQ(never.start, data_day - 8h) << "as if all stood above the mask";
+    ASSERT_THAT(never.warnings, SizeIs(1));
+    EXPECT_THAT(never.warnings[0],
+                StartsWith("no fix is to be expected: too few satellites of gps, galileo, beidou, qzss, glonass, navic "
+                           "with orbits stand above 89 degrees at 46.4774, 30.7326 at any time of the navigation data; "
+                           "--at moves the antenna"));
+    const LoadedNavigation told = load(emulator_scenario(sky + "[run]\nstart = 2024-03-04T16:00:00Z\n"));
+    ASSERT_THAT(told.warnings, SizeIs(1));
+    EXPECT_THAT(told.warnings[0], StartsWith("no fix is to be expected at the start, 2024-03-04T16:00:00Z: too few "));
+    EXPECT_THAT(told.warnings[0], HasSubstr("30.7326 then; --at moves the antenna, --start moves the run"));
+    // The first row of a track counts as a place does.
+    std::ofstream(folder_ / "track.csv") << "time_s,lat_deg,lon_deg,height_m\n0,-46.5,-149.3,10\n10,-46.5,-149.3,10\n";
+    const std::string track = "[trajectory]\nkind = \"file\"\npath = \"" + (folder_ / "track.csv").string() + "\"\n";
+    EXPECT_EQ(load(emulator_scenario(sky + track)).start, data_day - 8h);
+}
+
+TEST_F(LoadNavigation, TellsThatTooFewSatellitesHaveOrbitsAtItsStart) {
+    const LoadedNavigation loaded = load(scenario("constellations = [\"qzss\"]", "[run]\nduration_s = 60"));
+    ASSERT_THAT(loaded.warnings, SizeIs(1));
+    EXPECT_THAT(loaded.warnings[0], StartsWith("no fix is to be expected: too few satellites of gps"));
+    EXPECT_THAT(loaded.warnings[0], HasSubstr("have orbits at any time of the navigation data"));
+    EXPECT_EQ(loaded.start, data_day + 2h);
+}
+
+TEST_F(LoadNavigation, TellsTheLastOrbitsOfARunThatOutlastsThem) {
+    KeplerEphemeris late = NominalConstellation().record({Constellation::gps, 1}, data_day + 20h).value();
+    std::ofstream(folder_ / "late.rnx") << nominal_records() << rinex_record(late);
+    const auto loaded = load(emulator_scenario("[sky]\nnavigation = \"" + (folder_ / "late.rnx").string() +
+                                               "\"\n[run]\nduration_s = 36000\n"));
+    ASSERT_THAT(loaded.warnings, SizeIs(1));
+    EXPECT_THAT(loaded.warnings[0], HasSubstr("the run outlasts the navigation data: after 2024-03-05T05:59:42Z, too "
+                                              "few satellites of gps"));
+}
+
+TEST_F(LoadNavigation, TheNominalSkyStandsInForAnEmptyCache) {
+    const auto automatic = [&](const std::string& more, const DataFolders& folders) {
+        return load_navigation(emulator_scenario("[sky]\nnavigation = \"auto\"\n" + more), wall_now, folders);
+    };
+    const auto nominal = automatic("", {{}, folder_ / "cache"});
+    ASSERT_TRUE(nominal);
+    EXPECT_THAT(nominal->source->satellites(), SizeIs(146));
+    EXPECT_EQ(nominal->start, wall_now);
+    EXPECT_THAT(nominal->files, IsEmpty());
+    ASSERT_THAT(nominal->warnings, SizeIs(1));
+    EXPECT_THAT(nominal->warnings[0], HasSubstr("the sky is the nominal one: "));
+    EXPECT_THAT(nominal->warnings[0], HasSubstr("skyloop fetch-nav --date 2026-01-04 gets it"));
+    EXPECT_THAT(automatic("", {}).value().warnings[0], HasSubstr("no cache of navigation files"));
+    std::filesystem::create_directories(folder_ / "cache/navigation");
+    std::filesystem::copy_file(folder_ / "two.rnx", folder_ / "cache/navigation/BRDC_20240650000_01D_MN.rnx.gz");
+    const auto cached = automatic("[run]\nstart = 2024-03-05T03:00:00Z\n", {{}, folder_ / "cache"});
+    ASSERT_TRUE(cached);
+    EXPECT_THAT(cached->files, SizeIs(1));
+    EXPECT_THAT(cached->notes, testing::ElementsAre("navigation: BRDC_20240650000_01D_MN.rnx.gz, of the cache"));
+    const auto late = automatic("[run]\nstart = 2024-03-05T16:00:00Z\n", {{}, folder_ / "cache"});
+    EXPECT_THAT(late.value().warnings[0], HasSubstr("ends before the start of the run"));
+    EXPECT_THAT(late.value().source->satellites(), SizeIs(146));
 }
 
 TEST_F(LoadNavigation, RebasingMovesTheDataByWholeDays) {

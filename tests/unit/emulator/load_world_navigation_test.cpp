@@ -70,5 +70,20 @@ TEST(LoadWorldNavigation, ReadsAlmanacs) {
     EXPECT_THAT(wrong.error().message, HasSubstr("wrong_sem.txt:9: found '0'"));
 }
 
+// Its week is 862 of 1024: 2016 or 2036.
+TEST(LoadWorldNavigation, AnAlmanacIsNotOfTheFuture) {
+    SKYLOOP_REQUIRE_SHARED(folder, "nav/almanac");
+    SKYLOOP_REQUIRE_SHARED(nav, "nav/brdc0910.09g");
+    const GpsTime late_2026 = to_gps_time(2447, 0.0);
+    const auto alone = load_navigation(with_navigation(folder / "yuma.txt"), late_2026);
+    ASSERT_TRUE(alone) << alone.error().message;
+    EXPECT_EQ(alone->start, to_gps_time(1024 + 862, 319488.0));
+    Scenario scenario = with_navigation(folder / "yuma.txt");
+    scenario.sky.navigation.push_back(nav);
+    const auto beside = load_navigation(scenario, to_gps_time(3400, 0.0));
+    ASSERT_TRUE(beside);
+    EXPECT_EQ(week_and_tow(beside->source->span()->last).week, 1024 + 862 + 1) << "the one that is nearest to 2009";
+}
+
 }  // namespace
 }  // namespace skyloop::test
