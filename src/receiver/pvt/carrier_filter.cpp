@@ -179,7 +179,7 @@ double CarrierFilter::State::misfit_of_codes() const {
 
 std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const SingleDifference> differences,
                                                           const Spacing& spacing, GpsTime time) {
-    const Seconds passed = time_ ? difference(time, *time_) : Seconds(0);
+    passed_ = time_ ? difference(time, *time_) : Seconds(0);
     present_.assign(differences.begin(), differences.end());
     groups_.clear();
     std::set<SatelliteId> satellites;
@@ -190,11 +190,11 @@ std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const Single
     if (satellites.size() < least_satellites) return std::nullopt;
     time_ = time;
     arrange(present_, spacing, time);
-    predict(spacing, passed);
+    predict(spacing, passed_);
     std::erase_if(groups_, [](const auto& group) { return group.second.size() < 2; });
     for (auto& [name, group] : groups_) {
         std::ranges::stable_sort(group, std::ranges::greater(), [](const auto* d) { return d->elevation; });
-        use_codes(group, passed);
+        use_codes(group, passed_);
     }
     std::size_t fitting = 0;  // groups
     for (const auto& [name, group] : groups_)
@@ -206,8 +206,8 @@ std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const Single
     if (contradicted() || !credible) return std::nullopt;
     const double phases = misfit_count_ > 0 ? misfit_squares_ / misfit_count_ : 1;
     misfit_squares_ = misfit_count_ = 0;
-    follow(excess_, phases, passed);
-    follow(code_excess_, codes, passed);
+    follow(excess_, phases, passed_);
+    follow(code_excess_, codes, passed_);
     return CarrierOffset{state_.values.head<3>(),
                          std::max(excess_, code_excess_) * state_.covariance.topLeftCorner<3, 3>()};
 }

@@ -83,6 +83,7 @@ std::optional<FixedOffset> CarrierFilter::State::fix(const std::vector<Ambiguity
     return fixed;
 }
 
+// An echo that lasts is the same in every epoch: whole numbers say something new about it by and by.
 void CarrierFilter::State::hold(const std::vector<AmbiguityPair>& pairs, const VectorXd& whole) {
     constexpr double held_to_cycles = 0.03;
     MatrixXd design = MatrixXd::Zero(whole.size(), state_.size());
@@ -90,8 +91,9 @@ void CarrierFilter::State::hold(const std::vector<AmbiguityPair>& pairs, const V
         design(i, pairs[static_cast<std::size_t>(i)].at) = 1;
         design(i, pairs[static_cast<std::size_t>(i)].reference) = -1;
     }
+    const double repeated = std::max(1.0, 2 * p_.phase_memory.value() / std::max(passed_.value(), 1e-3));
     state_.absorb(design, whole - design * state_.values,
-                  echoes(pairs) + square(held_to_cycles) * MatrixXd::Identity(whole.size(), whole.size()));
+                  repeated * echoes(pairs) + square(held_to_cycles) * MatrixXd::Identity(whole.size(), whole.size()));
 }
 
 // The largest variance of a phase among so many of the best ones.

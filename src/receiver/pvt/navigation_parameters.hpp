@@ -106,7 +106,7 @@ struct DifferentialParameters {
 /// the baseline is that of differences between both ends.
 struct CarrierParameters {
     Metres code_floor{0.6}, code_at_zenith{0.8};  ///< of a code: √(floor² + (at_zenith/sin e)²), more below 40 dBHz
-    Seconds code_memory{100};                     ///< for which errors of a code last
+    Seconds code_memory{45};                      ///< for which errors of a code last
     Metres phase_noise{0.001};                    ///< of a phase, new with each epoch
     Metres phase_echo_at_zenith{0.003};           ///< what echoes do to a phase, over sin e
     Seconds phase_memory{60};                     ///< for which that lasts
@@ -127,7 +127,7 @@ struct CarrierParameters {
     Seconds memory{30};                        ///< of an ambiguity whose signal is missed
     int most_misfits = 3;             ///< epochs in which most phases contradict what is held, until all begins anew
     double told_per_length = 1.4e-6;  ///< of the reported accuracies, beside the filter's
-    Metres told_floor{0.005};         ///< the same
+    Metres told_floor{0.006};         ///< the same
 };
 
 /// What the receiver must hear of the satellites' data.

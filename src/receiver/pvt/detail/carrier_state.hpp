@@ -70,6 +70,7 @@ private:
     std::vector<SingleDifference> present_;  // of the last epoch
     std::map<std::pair<Constellation, Signal>, Group> groups_;
     std::optional<GpsTime> time_, fixed_since_;
+    Seconds passed_;                                // since the epoch before
     int misfits_ = 0;                               // epochs in a row in which most phases did not fit
     double misfit_squares_ = 0, misfit_count_ = 0;  // of this epoch's phases, in their expected variances
     double excess_ = 1, code_excess_ = 1;           // of the variances, as misfits of the last seconds show it
