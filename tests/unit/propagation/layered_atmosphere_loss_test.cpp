@@ -112,7 +112,7 @@ TEST(LayeredAtmosphereLoss, IsThatOfEachSatellitesOwnCarrier) {
         SCOPED_TRACE(f);
         const Hertz carrier(f);
         OneSatellite scene(Angle::degrees(90), Metres(22e6), sea_level_place);
-        scene.arrival().signals.push_back({Signal::l1, carrier});
+        scene.arrival().signals.push_back({Signal::l1, carrier, Seconds(0), Decibels(0)});
         const Arrival& arrival = scene.after(loss);
         const double gas =
             oxygen_attenuation(carrier, 0.6, 0.277).value() + vapour_attenuation(carrier, 7.5, 0.6).value();

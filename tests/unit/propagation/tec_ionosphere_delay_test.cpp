@@ -73,7 +73,7 @@ TEST(TecIonosphereDelay, FallsWithTheSquareOfTheCarrier) {
     TecIonosphereDelay effect(Tecu(20));
     for (const double f : {1575.42e6, 1602e6 - 7 * 562.5e3, 1561.098e6, 1176.45e6}) {
         OneSatellite scene(Angle::degrees(33), Metres(22e6), Geodetic::degrees(-30, 150, 20));
-        scene.arrival().signals.push_back({Signal::l1, Hertz(f)});
+        scene.arrival().signals.push_back({Signal::l1, Hertz(f), Seconds(0), Decibels(0)});
         const double ratio = 1575.42e6 / f;
         EXPECT_NEAR(scene.after(effect).iono_delay.value(),
                     tec_delay(Tecu(20), Angle::degrees(33)).value() * ratio * ratio, 1e-12);

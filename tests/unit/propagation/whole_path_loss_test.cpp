@@ -29,7 +29,7 @@ TEST(WholePathLoss, GrowsWithTheCarrierAsP676Has) {
         EXPECT_NEAR(whole_path_loss(p, Angle::degrees(90), Hertz(f)).value(), zenith, 1e-6) << f;
     }
     test::OneSatellite scene(Angle::degrees(30), Metres(22e6), Geodetic::degrees(46, 30, 0));
-    scene.arrival().signals.push_back({Signal::g1, Hertz(1602e6)});
+    scene.arrival().signals.push_back({Signal::g1, Hertz(1602e6), Seconds(0), Decibels(0)});
     WholePathLoss effect(p);
     EXPECT_EQ(scene.after(effect).gas_loss, whole_path_loss(p, Angle::degrees(30), Hertz(1602e6)));
 }
