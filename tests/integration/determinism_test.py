@@ -12,12 +12,13 @@ COLUMNS = {
     "fixes.csv": "time_utc,gps_week,tow_s,true_lat_deg,true_lon_deg,true_height_m,lat_deg,lon_deg,height_m,east_error_m,"
                  "north_error_m,up_error_m,vel_north_mps,vel_east_mps,vel_down_mps,speed_mps,course_deg,fix_type,"
                  "satellites_used,satellites_visible,gdop,pdop,hdop,vdop,tdop,h_acc_m,v_acc_m,s_acc_mps,t_acc_m,clock_bias_m,"
-                 "true_clock_bias_m",
+                 "true_clock_bias_m,sigma_uere_m,error_scale_m",
     "satellites.csv": "time_utc,satellite,azimuth_deg,elevation_deg,range_m,line_of_sight,paths,excess_path_m,iono_delay_m,"
                       "tropo_delay_m,gas_loss_db,cloud_loss_db,rain_loss_db,cn0_dbhz,pseudorange_m,used,orbit_clock_error_m,"
                       "multipath_m,code_noise_m,phase_noise_m,doppler_noise_hz,foliage_loss_db,antenna_gain_dbic,"
                       "power_offset_db,interference_loss_db,amplitude_scintillation,phase_scintillation_rad,residual_m,"
-                      "false_range_m,state,shadowing_db,fading_db",
+                      "false_range_m,state,shadowing_db,fading_db,free_space_loss_db,iono_loss_db,reflection_loss_db,"
+                      "received_power_dbw",
 }
 
 

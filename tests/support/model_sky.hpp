@@ -72,6 +72,7 @@ public:
             effects_[i]->apply(trace.arrivals, trace.sky, trace.truth);
         }
         trace.epoch.fix = model_->fix(trace.truth, trace.sky, trace.arrivals);
+        trace.error_scale = model_->last_scale();
         return trace;
     }
     Trace epoch(const SkyView& sky, double since_start) {

@@ -52,7 +52,8 @@ std::int64_t OracleRow::integer(const std::string& column) const { return static
 bool shared_oracles_present() { return fs::is_directory(shared_root / "oracles"); }
 
 std::vector<OracleRow> oracle_rows(const std::string& name) {
-    const fs::path path = shared_oracles_present() ? shared_root / "oracles" / name : embedded_root / name;
+    const fs::path whole = shared_root / "oracles" / name;
+    const fs::path path = fs::exists(whole) ? whole : embedded_root / name;
     std::ifstream file(path);
     std::string line;
     std::vector<OracleRow> rows;

@@ -27,8 +27,8 @@ private:
     std::map<std::string, std::string, std::less<>> cells_;
 };
 
-/// The rows of `oracles/<name>` in the shared data, or, where that folder is absent, of the small embedded subset in
-/// tests/support/oracles. An empty or missing table fails the test.
+/// The rows of `oracles/<name>` in the shared data, or, where that table is absent, of the small embedded subset in
+/// tests/support/oracles. An empty table, and one that is in neither place, fails the test.
 std::vector<OracleRow> oracle_rows(const std::string& name);
 
 /// True when the whole table is at hand, not only the embedded subset.

@@ -51,15 +51,15 @@ Displacement<Enu> correlated_noise(const Eigen::Matrix4d& cofactors, Metres sigm
 }  // namespace
 
 Baseline::Baseline(const BaselineParameters& parameters, const SensorContext& context, std::string_view stream)
-    : parameters_(parameters),
-      builder_(context, {.snr_cutoff = parameters.snr_cutoff, .max_reflections = parameters.max_reflections}),
-      noise_(context.seed, stream) {}
+    : parameters_(parameters), builder_(context, {.snr_cutoff = parameters.snr_cutoff}), noise_(context.seed, stream) {}
 
 Fix Baseline::fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) {
     const Eigen::Vector3d normals = noise_.draw();
+    scale_.reset();
     Fix fix = builder_.start(truth, sky, arrivals);
     if (!fix.has_position()) return fix;
     const UereScale scale = uere_scale(fix, arrivals, parameters_);
+    scale_ = scale;
     tell_accuracy(fix, scale);
     const Displacement<Ecef> error = position_error(fix, truth.geodetic, scale, normals);
     builder_.place(fix, truth.position + error, scale.position_error);

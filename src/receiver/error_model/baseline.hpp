@@ -3,6 +3,7 @@
 /// The sensor model with one attenuation for the whole path.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "receiver/error_model/fix_builder.hpp"
 #include "receiver/error_model/model_parameters.hpp"
 #include "world/flow/arrivals.hpp"
+#include "world/flow/error_scale.hpp"
 #include "world/flow/fix.hpp"
 
 namespace skyloop::inline receiver {
@@ -22,11 +24,6 @@ Metres user_equivalent_range_error(const Arrival& arrival, const BaselineParamet
 /// Spread over satellites: sample standard deviation (n − 1), or root mean square. 0 for fewer than two values or none.
 Metres uere_spread(std::span<const Metres> errors, UereStatistic statistic);
 
-/// The scale of an epoch's position error.
-struct UereScale {
-    Metres sigma_uere;
-    Metres position_error;  ///< E = PDOP·σ_uere, three-dimensional
-};
 /// σ_uere over the used satellites of `fix`, and E with its PDOP (MODELS.md 3.9).
 /// @param fix its satellites are those of `arrivals`, in the same order
 UereScale uere_scale(const Fix& fix, const Arrivals& arrivals, const BaselineParameters& parameters);
@@ -41,6 +38,7 @@ public:
     Baseline(const BaselineParameters& parameters, const SensorContext& context,
              std::string_view stream = "baseline.position");
     Fix fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) override;
+    [[nodiscard]] std::optional<UereScale> last_scale() const override { return scale_; }
 
 private:
     void tell_accuracy(Fix& fix, const UereScale& scale) const;
@@ -50,6 +48,7 @@ private:
     BaselineParameters parameters_;
     FixBuilder builder_;
     PositionNoise noise_;
+    std::optional<UereScale> scale_;
 };
 
 /// The article's model with WholePathLoss in the place of the layered atmosphere (MODELS.md section 6). The difference

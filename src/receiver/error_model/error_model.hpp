@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "base/geo/geoid.hpp"
 #include "base/time/utc_time.hpp"
 #include "receiver/error_model/model_parameters.hpp"
 #include "world/flow/arrivals.hpp"
+#include "world/flow/error_scale.hpp"
 #include "world/flow/fix.hpp"
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
@@ -22,6 +24,8 @@ public:
     virtual ~ErrorModel() = default;
     /// The fix of one epoch; epochs come in ascending time. Its satellites are those of `sky`, in its order.
     virtual Fix fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) = 0;
+    /// What the error of the last fix was drawn from; nothing without a fix, and of models with errors of other causes.
+    [[nodiscard]] virtual std::optional<UereScale> last_scale() const { return std::nullopt; }
 };
 
 /// Shared by all sensor models of a run.

@@ -10,15 +10,12 @@
 namespace skyloop::inline receiver {
 namespace {
 
-bool visible(const Arrival& arrival, const SelectionRule& rule) {
-    return arrival.paths > 0 && !arrival.cut_off &&
-           (!rule.max_reflections || arrival.reflections <= *rule.max_reflections);
-}
+bool visible(const Arrival& arrival) { return arrival.paths > 0 && !arrival.cut_off; }
 
 bool usable(const SatelliteInView& satellite, const Arrival& arrival, const SelectionRule& rule) {
     if (!satellite.healthy || arrival.called_unhealthy || arrival.cut_off || satellite.elevation < rule.elevation_mask)
         return false;
-    if (!rule.hidden_too && !visible(arrival, rule)) return false;
+    if (!rule.hidden_too && !visible(arrival)) return false;
     return !rule.snr_cutoff || (arrival.cn0 && *arrival.cn0 >= *rule.snr_cutoff);
 }
 
@@ -37,7 +34,7 @@ std::vector<SatelliteStatus> select_satellites(const SkyView& sky, const Arrival
         status.azimuth = satellite.azimuth;
         status.elevation = satellite.elevation;
         status.healthy = satellite.healthy && !arrival.called_unhealthy;
-        if (visible(arrival, rule)) status.cn0 = arrival.cn0;
+        if (visible(arrival)) status.cn0 = arrival.cn0;
         status.used = usable(satellite, arrival, rule);
         statuses.push_back(status);
     }

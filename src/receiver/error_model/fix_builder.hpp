@@ -39,10 +39,9 @@ private:
 
 /// A satellite is used when it is healthy and passes all of these; every limit is inclusive (MODELS.md D-18, D-19).
 struct SelectionRule {
-    Angle elevation_mask = Angle::degrees(5);           ///< at or above
-    bool hidden_too = false;                            ///< true: use a satellite even when no ray of it arrives
-    std::optional<DbHz> snr_cutoff = std::nullopt;      ///< at or above; a satellite without C/N0 fails
-    std::optional<int> max_reflections = std::nullopt;  ///< one that needs more is invisible
+    Angle elevation_mask = Angle::degrees(5);       ///< at or above
+    bool hidden_too = false;                        ///< true: use a satellite even when no ray of it arrives
+    std::optional<DbHz> snr_cutoff = std::nullopt;  ///< at or above; a satellite without C/N0 fails
 };
 
 /// The satellites of `sky` as the receiver reports them, in its order. An invisible one has no C/N0.

@@ -37,8 +37,7 @@ enum class NoiseAxes {
 /// The article's sensor model: which satellites it uses, and how their delays become the spread of the position. The
 /// powers are in LinkBudgetParameters, the air in AtmosphereParameters.
 struct BaselineParameters {
-    DbHz snr_cutoff{5};        ///< at or above is used
-    int max_reflections = 16;  ///< a satellite that needs more is invisible
+    DbHz snr_cutoff{5};  ///< at or above is used
     UereStatistic statistic = UereStatistic::sample_std;
     double iono_fraction = 1.0;   ///< of the ionospheric delay that enters UERE; 0.5 in the calibrated preset
     double tropo_fraction = 1.0;  ///< of the tropospheric delay; 0.1 in the calibrated preset

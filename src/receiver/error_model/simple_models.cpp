@@ -74,9 +74,11 @@ BaselineParameters residual_of_refraction(const RefractionParameters& parameters
 
 Fix Refraction::fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) {
     const Eigen::Vector3d normals = noise_.draw();
+    scale_.reset();
     Fix fix = builder_.start(truth, sky, arrivals);
     if (!fix.has_position()) return fix;
     const UereScale scale = uere_scale(fix, arrivals, residual_of_refraction(parameters_));
+    scale_ = scale;
     const Metres per_axis = scale.position_error / std::sqrt(3.0);
     builder_.place(fix, truth.position + Displacement<Ecef>(per_axis.value() * normals), scale.position_error);
     fix.horizontal_accuracy = per_axis * std::sqrt(2.0);

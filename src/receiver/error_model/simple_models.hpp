@@ -63,11 +63,13 @@ public:
     Refraction(const RefractionParameters& parameters, const SensorContext& context)
         : parameters_(parameters), builder_(context, {}), noise_(context.seed, "refraction.position") {}
     Fix fix(const TruthState& truth, const SkyView& sky, const Arrivals& arrivals) override;
+    [[nodiscard]] std::optional<UereScale> last_scale() const override { return scale_; }
 
 private:
     RefractionParameters parameters_;
     FixBuilder builder_;
     PositionNoise noise_;
+    std::optional<UereScale> scale_;
 };
 
 }  // namespace skyloop::inline receiver

@@ -78,8 +78,9 @@ Metres SiteCorrections::ionosphere(Constellation constellation, const SkyDirecti
     if (parameters_.ionosphere == IonosphereCorrection::broadcast) {
         if (constellation == Constellation::galileo && heard.galileo) {
             const auto& a = *heard.galileo;
-            return ionosphere_group_delay(ntcm_g_content({a[0], a[1], a[2]}, place_, direction, ionosphere_time_),
-                                          carrier);
+            const PiercePoint pierce = published_pierce_point({}, {place_.latitude, place_.longitude, {}}, direction);
+            return ionosphere_group_delay(
+                ntcm_g_content({a[0], a[1], a[2]}, pierce, direction.elevation, ionosphere_time_), carrier);
         }
         if (constellation == Constellation::beidou && heard.beidou) {
             const double ratio = carrier_frequency(Signal::b1i).value() / carrier.value();

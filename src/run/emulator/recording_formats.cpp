@@ -73,6 +73,13 @@ void append_quality(CsvRows& row, const Fix& fix) {
     row.number(fix.clock_bias.value(), 4);
 }
 
+void append_error_scale(CsvRows& row, const Trace& trace) {
+    if (trace.error_scale && trace.epoch.fix.has_position())
+        row.number(trace.error_scale->sigma_uere.value(), 4).number(trace.error_scale->position_error.value(), 4);
+    else
+        row.nothing(2);
+}
+
 // The first of `items`, which ascend by satellite, that is not before `id`.
 template <class Item>
 auto first_of(const std::vector<Item>& items, SatelliteId id, SatelliteId Item::*member) {
@@ -129,6 +136,14 @@ void append_errors(CsvRows& rows, const Arrival& arrival, const SignalTerms* ter
     rows.number(arrival.amplitude_scintillation, 4).number(arrival.phase_scintillation.rad(), 4);
 }
 
+// What the other columns leave out of it.
+void append_link_budget(CsvRows& rows, const Arrival& arrival) {
+    rows.number(arrival.free_space_loss.value(), 5).number(arrival.iono_loss.value(), 5);
+    rows.number(arrival.reflection_loss.value(), 5);
+    const bool arrives = arrival.cn0 && arrival.received_power;
+    arrives ? rows.number(arrival.received_power->value(), 5) : rows.nothing();
+}
+
 }  // namespace
 
 std::string fix_row(const Trace& trace) {
@@ -144,13 +159,15 @@ std::string fix_row(const Trace& trace) {
     row.text(fix_type_name(fix.type)).whole(fix.satellites_used());
     row.whole(trace.sky.satellites.size());
     fix.has_position() ? append_quality(row, fix) : void(row.nothing(10));
-    row.number(trace.measurement.clock_bias.value(), 4).end_row();
+    row.number(trace.measurement.clock_bias.value(), 4);
+    append_error_scale(row, trace);
+    row.end_row();
     return row.take();
 }
 
 std::string satellite_rows(const Trace& trace) {
     const std::string time = utc_text(trace.truth.time);
-    constexpr std::size_t usual_length = 250;  // of a row
+    constexpr std::size_t usual_length = 300;  // of a row
     CsvRows rows(usual_length * trace.sky.satellites.size());
     for (std::size_t i = 0; i < trace.sky.satellites.size(); ++i) {
         const SatelliteInView& sky = trace.sky.satellites[i];
@@ -166,7 +183,9 @@ std::string satellite_rows(const Trace& trace) {
         rows.number((arrival.false_range + (terms ? terms->false_code : Metres(0))).value(), 4);
         rows.text(reception_names.at(static_cast<std::size_t>(reception_of(arrival))));
         rows.number(arrival.direct_loss.value(), 2);
-        rows.number((arrival.shadowing_loss - arrival.direct_loss).value(), 2).end_row();
+        rows.number((arrival.shadowing_loss - arrival.direct_loss).value(), 2);
+        append_link_budget(rows, arrival);
+        rows.end_row();
     }
     return rows.take();
 }

@@ -85,12 +85,37 @@ void warn_of_weather_below(const Scenario& scenario, const Geoid* geoid, std::ve
                             deck.kind, deck.top.value(), above, height.value()));
 }
 
+std::string layer_text(const AtmosphericLayer& layer) {
+    return fmt::format("{} ({:g} to {:g} m)", layer.name.empty() ? "a layer" : layer.name, layer.base.value(),
+                       layer.top.value());
+}
+
+// Shells that lie in each other: their air counts twice.
+void warn_of_overlapping_layers(const Scenario& scenario, std::vector<std::string>& warnings) {
+    if (scenario.model.sensor_model != ErrorModelKind::baseline) return;
+    std::vector<AtmosphericLayer> layers = scenario.atmosphere.layers;
+    std::erase_if(layers, [](const AtmosphericLayer& layer) { return !layer.enabled; });
+    std::stable_sort(layers.begin(), layers.end(), [](const auto& a, const auto& b) { return a.base < b.base; });
+    const AtmosphericLayer* highest = nullptr;
+    std::vector<std::string> pairs;
+    for (const AtmosphericLayer& layer : layers) {
+        if (highest != nullptr && layer.base < highest->top)
+            pairs.push_back(layer_text(*highest) + " and " + layer_text(layer));
+        if (highest == nullptr || layer.top > highest->top) highest = &layer;
+    }
+    if (pairs.empty()) return;
+    const std::string more = pairs.size() > 1 ? fmt::format(", the first of {} such pairs", pairs.size()) : "";
+    warnings.push_back(fmt::format("atmosphere.layer: {} overlap{}: the air that they share weakens signals twice",
+                                   pairs.front(), more));
+}
+
 }  // namespace
 
 std::vector<std::string> weather_warnings(const Scenario& scenario, const Geoid* geoid) {
     std::vector<std::string> warnings;
     warn_of_idle_keys(scenario, warnings);
     warn_of_weather_below(scenario, geoid, warnings);
+    warn_of_overlapping_layers(scenario, warnings);
     return warnings;
 }
 

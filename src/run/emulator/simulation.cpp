@@ -7,7 +7,10 @@
 namespace skyloop::inline run {
 namespace {
 
-void make_fix(ErrorModel& model, Trace& trace) { trace.epoch.fix = model.fix(trace.truth, trace.sky, trace.arrivals); }
+void make_fix(ErrorModel& model, Trace& trace) {
+    trace.epoch.fix = model.fix(trace.truth, trace.sky, trace.arrivals);
+    trace.error_scale = model.last_scale();
+}
 
 void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings, ActiveFaults* faults) {
     const Arrivals nothing;

@@ -19,7 +19,7 @@ void read_baseline(TableReader& table, ModelSettings& settings) {
                                          presets.front()))
         p = *preset == 0 ? BaselineParameters::strict() : BaselineParameters::calibrated();
     table.quantity("snr_cutoff_dbhz", p.snr_cutoff, {-100, 100}, "a satellite exactly at the cut-off is used");
-    table.integer("max_reflections", p.max_reflections, {0, 16}, "a path with more is no path");
+    table.integer("max_reflections", link.max_reflections, {0, 16}, "a path with more is no path");
     table.quantity("reflection_loss_db", link.reflection_loss, {0, 100}, "of each wall");
     table.word("power_mode", {{"eirp", PowerMode::eirp}, {"received_spec", PowerMode::received_spec}}, link.power_mode,
                "received_spec replaces power less free-space loss by the specified minimum");
@@ -59,8 +59,8 @@ void read_simple_models(TableReader& model, ModelSettings& settings) {
         table.number("oxygen_height_km", p.oxygen_height_km, {0, 100}, "scale height of oxygen");
         table.number("vapour_height_km", p.vapour_height_km, {0, 100}, "scale height of water vapour");
         table.number("vapour_g_m3", p.vapour_g_m3, {0, 100}, "water vapour on the ground");
-        table.number("oxygen_db_per_km", p.oxygen_db_per_km, {0, 100}, "loss in oxygen");
-        table.number("vapour_db_per_km_per_g_m3", p.vapour_db_per_km_per_g_m3, {0, 100}, "loss in water vapour");
+        table.number("oxygen_db_per_km", p.oxygen_db_per_km, {0, 100}, "loss in oxygen at L1");
+        table.number("vapour_db_per_km_per_g_m3", p.vapour_db_per_km_per_g_m3, {0, 100}, "loss in water vapour at L1");
     });
     model.table("refraction", "a sensor model: refraction in the air", [&](TableReader& table) {
         table.number("surface_refractivity", settings.refraction.surface_refractivity, {0, 1000},
@@ -201,9 +201,9 @@ void read_ionosphere(TableReader& atmosphere, Scenario& scenario, const std::fil
                         "vertical; giving it switches the broadcast coefficients off");
     atmosphere.quantity("ionosphere_loss_db", p.ionosphere_loss, {0, 100}, "constant loss");
     atmosphere.quantity("riometer_absorption_30mhz_db", p.riometer_absorption_30mhz, {0, 100},
-                        "zenith absorption at 30 MHz, scaled to L1");
+                        "zenith absorption at 30 MHz, scaled to the carrier");
     atmosphere.quantity("ionosphere_base_m", p.ionosphere_base, {1e4, 1e6},
-                        "height at which that absorption's slant is taken");
+                        "height at which that absorption's slant is taken, and from which on there is no loss");
 }
 
 }  // namespace

@@ -81,6 +81,9 @@ struct Arrival {
     Decibels interference_loss;          ///< of C/N0, by jamming
     double amplitude_scintillation = 0;  ///< S4 at the first signal
     Angle phase_scintillation;           ///< 1 σ, at the first signal
+    /// P_rec of the link budget of sensor models, before faults; nothing for a hidden satellite and of the modern
+    /// model.
+    std::optional<DecibelWatts> received_power{};
     std::optional<DbHz>
         cn0;  ///< of the first signal; nothing until a link budget has been made, or for a hidden satellite
 };

@@ -202,12 +202,9 @@ IonosphereTime IonosphereTime::of(const UtcTime& utc) {
     return {std::floor(skyloop::day_of_year(utc)), utc.seconds_of_day() / 3600};
 }
 
-Tecu ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic& place, const SkyDirection& direction,
+Tecu ntcm_g_content(const EffectiveIonisation& broadcast, const PiercePoint& pierce, Angle elevation,
                     const IonosphereTime& when) {
-    const ThinShell shell;
-    // The model leaves the height of the antenna out.
-    const PiercePoint pierce = published_pierce_point(shell, {place.latitude, place.longitude, {}}, direction);
-    return ntcm_vertical_content(broadcast, pierce, when) * modified_single_layer_mapping(shell, direction.elevation);
+    return ntcm_vertical_content(broadcast, pierce, when) * modified_single_layer_mapping(ThinShell(), elevation);
 }
 
 }  // namespace skyloop::inline world

@@ -110,7 +110,9 @@ struct IonosphereTime {
 
 /// The slant electron content towards a satellite by NTCM-G (European Commission, NTCM G Ionospheric Model Description,
 /// MODELS.md A.5); delay by ionosphere_group_delay(). For elevations above 0°.
-Tecu ntcm_g_content(const EffectiveIonisation& broadcast, const Geodetic& place, const SkyDirection& direction,
+/// @param pierce of the default shell, from an antenna at height 0: the model leaves heights out. By
+///               published_pierce_point() it is what receivers compute, by pierce_point() what the ray meets.
+Tecu ntcm_g_content(const EffectiveIonisation& broadcast, const PiercePoint& pierce, Angle elevation,
                     const IonosphereTime& when);
 
 }  // namespace skyloop::inline world

@@ -46,7 +46,9 @@ IonosphereTruth ntcm_g_truth(const EffectiveIonisation& ionisation, const LeapSe
             when = IonosphereTime::of(to_utc(time, leap_seconds));
         }
         const SkyDirection direction{satellite.azimuth, above_horizon(satellite.elevation)};
-        return ionosphere_group_delay(ntcm_g_content(ionisation, truth.geodetic, direction, when), carrier);
+        const Geodetic ground{truth.geodetic.latitude, truth.geodetic.longitude, {}};
+        const PiercePoint where = pierce_point(ntcm_g_shell, ground, direction);
+        return ionosphere_group_delay(ntcm_g_content(ionisation, where, direction.elevation, when), carrier);
     };
 }
 

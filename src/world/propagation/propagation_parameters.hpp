@@ -71,9 +71,9 @@ struct AtmosphereParameters {
 
     TecSource tec_source = TecSource::automatic;
     Tecu total_electron_content{30.86};     ///< vertical
-    Decibels ionosphere_loss{0};            ///< constant part of L_iono
+    Decibels ionosphere_loss{0};            ///< constant part of L_iono, below the base
     Decibels riometer_absorption_30mhz{0};  ///< zenith absorption at 30 MHz; scaled by (30 MHz/f)²/sin e′
-    Metres ionosphere_base{60000};          ///< where e′ is taken: the ionosphere absorbs at its lower edge
+    Metres ionosphere_base{60000};          ///< where e′ is taken: the ionosphere absorbs there, and not above
 
     Metres zenith_dry_delay{2.3};  ///< a of E_z,dry = a exp(−b h)
     double zenith_dry_decay_per_m = 0.116e-3;
@@ -109,19 +109,21 @@ struct LinkBudgetParameters {
     DecibelWatts specified_received_power{-158.5};  ///< IS-GPS-200, table 3-Va
     double thermal_noise_dbw_hz = -204.0;           ///< noise density, dBW/Hz: 10 log10(k_B · 290 K)
     Decibels reflection_loss{3.0103};               ///< of one wall: half of the power
+    int max_reflections = 16;                       ///< a path with more is no path
 };
 
 /// Zenith attenuation as sea-level specific attenuation times equivalent height (MODELS.md section 6).
 ///
 /// The equivalent heights are those of P.676, so the specific attenuations are too, and not the article's rational
-/// formulas: P.676-13 annex 1 at 1575.42 MHz, 1013.25 hPa of dry air, 288.15 K. The vapour's is taken in proportion to
+/// formulas: P.676-13 annex 1 at 1575.42 MHz and 288.15 K. The heights are of a total pressure of 1013.25 hPa, of which
+/// 7.5 g/m³ of vapour have 9.97 hPa, and annex 1 takes the rest, the dry air's. The vapour's is taken in proportion to
 /// the density; what that leaves out, vapour that broadens its own lines, is about 1e-4 dB at the zenith.
 struct WholePathParameters {
     double oxygen_height_km = 5.35;
     double vapour_height_km = 1.84;
     double vapour_g_m3 = 7.5;
-    double oxygen_db_per_km = 6.3883e-3;
-    double vapour_db_per_km_per_g_m3 = 1.68767e-5;
+    double oxygen_db_per_km = 6.2788e-3;
+    double vapour_db_per_km_per_g_m3 = 1.67379e-5;
 };
 
 }  // namespace skyloop::inline world

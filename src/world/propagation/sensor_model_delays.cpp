@@ -13,6 +13,7 @@ namespace {
 
 // Delay at L1 of one TECU, m, with the article's three digits (40.3·10¹⁶/f² = 0.1624).
 constexpr double metres_per_tecu = 0.162;
+constexpr Metres broadcast_shell_height{350000};  // IS-GPS-200, 20.3.3.5.2.5
 
 }  // namespace
 
@@ -33,9 +34,16 @@ Tecu TecIonosphereDelay::vertical_content(const SatelliteInView& satellite, cons
     return tec_of_vertical_delay(klobuchar_delay(broadcast, truth.geodetic, direction, truth.time).vertical);
 }
 
+Metres TecIonosphereDelay::shell_height() const {
+    const IonosphereMaps* maps = std::get_if<IonosphereMaps>(&content_);
+    return maps != nullptr ? maps->shell.height : broadcast_shell_height;
+}
+
 void TecIonosphereDelay::apply(Arrivals& arrivals, const SkyView& sky, const TruthState& truth) {
+    if (truth.geodetic.height.above_ellipsoid >= shell_height()) return;
     for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
-        arrival.iono_delay = tec_delay(vertical_content(satellite, truth), satellite.elevation);
+        const Metres at_l1 = tec_delay(vertical_content(satellite, truth), satellite.elevation);
+        arrival.iono_delay = ionosphere_delay_at(at_l1, first_carrier(arrival));
     });
 }
 

@@ -23,7 +23,8 @@ Metres tec_delay(Tecu vertical, Angle elevation);
 /// The electron content that gives a vertical delay at L1, c T_v / 0.162 (MODELS.md D-15).
 Tecu tec_of_vertical_delay(Metres vertical_delay);
 
-/// Writes the ionospheric delay of each arrival, at L1.
+/// Writes the ionospheric delay of each arrival, at its first carrier: that at L1 by (f_L1/f)². An antenna at or above
+/// the shell has none: 350 km, that of the broadcast model, whose obliquity F_p is, too; of maps their own.
 class TecIonosphereDelay : public PropagationEffect {
 public:
     /// The same electron content everywhere.
@@ -39,6 +40,8 @@ public:
     [[nodiscard]] Tecu vertical_content(const SatelliteInView& satellite, const TruthState& truth) const;
 
 private:
+    [[nodiscard]] Metres shell_height() const;
+
     std::variant<Tecu, KlobucharCoefficients, IonosphereMaps> content_;
 };
 

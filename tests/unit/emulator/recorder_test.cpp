@@ -49,6 +49,10 @@ Trace recorded_trace() {
     arrival.cloud_loss = Decibels(0.125);
     arrival.rain_loss = Decibels(0.0625);
     arrival.cn0 = DbHz(41.25);
+    arrival.free_space_loss = Decibels(182.5);
+    arrival.iono_loss = Decibels(0.375);
+    arrival.reflection_loss = Decibels(3.0103);
+    arrival.received_power = DecibelWatts(-159.5);
     trace.arrivals.satellites = {arrival, arrival};
     trace.arrivals.satellites[1].paths = 0;
     trace.arrivals.satellites[1].line_of_sight = false;
@@ -116,7 +120,20 @@ TEST(Recorder, AFixHasAllItsColumns) {
     EXPECT_EQ(row["tdop"], "0.800");
     EXPECT_EQ(row["h_acc_m"], "2.250");
     EXPECT_EQ(row["v_acc_m"], "3.500");
-    EXPECT_THAT(row, SizeIs(31));
+    EXPECT_EQ(row["sigma_uere_m"], "");
+    EXPECT_THAT(row, SizeIs(33));
+}
+
+TEST(Recorder, AFixOfASensorModelHasTheScaleOfItsError) {
+    Trace trace = recorded_trace();
+    trace.error_scale = {Metres(3.25), Metres(5.525)};
+    auto row = row_of(tables_of({trace}).first, 1);
+    EXPECT_EQ(row["sigma_uere_m"], "3.2500");
+    EXPECT_EQ(row["error_scale_m"], "5.5250");
+    trace.epoch.fix.type = FixType::none;
+    row = row_of(tables_of({trace}).first, 1);
+    EXPECT_EQ(row["sigma_uere_m"], "") << "of a receiver that is stopped";
+    EXPECT_EQ(row["error_scale_m"], "");
 }
 
 TEST(Recorder, WhatRoundsToNothingHasNoSign) {
@@ -136,7 +153,7 @@ TEST(Recorder, DopsThatNobodyKnowsAreEmpty) {
     for (const char* name : {"gdop", "pdop", "vdop"})
         EXPECT_EQ(row[name], "") << name;
     EXPECT_EQ(row["tdop"], "0.800");
-    EXPECT_THAT(row, SizeIs(31));
+    EXPECT_THAT(row, SizeIs(33));
 }
 
 TEST(Recorder, WithoutAFixItsColumnsAreEmpty) {
@@ -144,7 +161,7 @@ TEST(Recorder, WithoutAFixItsColumnsAreEmpty) {
         Trace trace = recorded_trace();
         trace.epoch.fix.type = type;
         auto row = row_of(tables_of({trace}).first, 1);
-        EXPECT_THAT(row, SizeIs(31));
+        EXPECT_THAT(row, SizeIs(33));
         for (const char* name : {"lat_deg", "lon_deg", "height_m", "east_error_m", "north_error_m", "up_error_m",
                                  "vel_north_mps", "vel_east_mps", "vel_down_mps", "speed_mps", "course_deg", "gdop",
                                  "pdop", "hdop", "vdop", "tdop", "h_acc_m", "v_acc_m"})
@@ -172,12 +189,17 @@ TEST(Recorder, EachSatelliteHasARow) {
     EXPECT_EQ(row["cloud_loss_db"], "0.12500");
     EXPECT_EQ(row["rain_loss_db"], "0.06250");
     EXPECT_EQ(row["cn0_dbhz"], "41.25");
+    EXPECT_EQ(row["free_space_loss_db"], "182.50000");
+    EXPECT_EQ(row["iono_loss_db"], "0.37500");
+    EXPECT_EQ(row["reflection_loss_db"], "3.01030");
+    EXPECT_EQ(row["received_power_dbw"], "-159.50000");
     EXPECT_EQ(row["used"], "1");
     EXPECT_NEAR(std::stod(row["pseudorange_m"]), 21'000'008 - speed_of_light * 0.99e-6, 1e-4);
     auto hidden = row_of(table, 2);
     EXPECT_EQ(hidden["satellite"], "G07");
     EXPECT_EQ(hidden["cn0_dbhz"], "");
     EXPECT_EQ(hidden["pseudorange_m"], "") << "nothing arrives that could be measured";
+    EXPECT_EQ(hidden["received_power_dbw"], "");
     EXPECT_EQ(hidden["used"], "0");
 }
 

@@ -27,6 +27,9 @@ TEST(Baseline, ReportsTimeSatellitesDopAndAccuracies) {
     EXPECT_NEAR(fix.horizontal_accuracy.value(), scale.position_error.value() * std::sqrt(2.0 / 3), 1e-12);
     EXPECT_NEAR(fix.vertical_accuracy.value(), scale.position_error.value() / std::sqrt(3.0), 1e-12);
     EXPECT_EQ(fix.geoid_undulation, Metres(0));
+    ASSERT_TRUE(trace.error_scale);
+    EXPECT_EQ(trace.error_scale->sigma_uere, scale.sigma_uere);
+    EXPECT_EQ(trace.error_scale->position_error, scale.position_error);
     ASSERT_EQ(fix.satellites.size(), baseline_sky.satellites.size());
     for (std::size_t i = 0; i < fix.satellites.size(); ++i) {
         EXPECT_EQ(fix.satellites[i].id, baseline_sky.satellites[i].id);
@@ -78,6 +81,7 @@ TEST(Baseline, FewerThanFourSatellitesGiveNoFix) {
     EXPECT_EQ(fix.satellites_used(), 0);
     ASSERT_EQ(fix.satellites.size(), 3u);
     EXPECT_TRUE(fix.satellites.front().cn0);
+    EXPECT_FALSE(run.epoch(test::sky_of(spots), 1.5).error_scale);
     EXPECT_EQ(run.epoch(test::sky_of({}), 2).epoch.fix.type, FixType::none);
 }
 

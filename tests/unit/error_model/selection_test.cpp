@@ -11,7 +11,7 @@ namespace {
 struct OneChoice {
     SkyView sky = test::sky_of({{10, 40}});
     Arrivals arrivals = free_space(sky);
-    SelectionRule rule{Angle::degrees(5), false, DbHz(5), 16};
+    SelectionRule rule{Angle::degrees(5), false, DbHz(5)};
     OneChoice() { arrival().cn0 = DbHz(45); }
     Arrival& arrival() { return arrivals.satellites.front(); }
     [[nodiscard]] SatelliteStatus status() const { return select_satellites(sky, arrivals, rule).front(); }
@@ -28,7 +28,6 @@ TEST(Selection, EveryLimitIsInclusive) {
     OneChoice choice;
     choice.sky.satellites.front().elevation = choice.rule.elevation_mask;
     choice.arrival().cn0 = DbHz(5);
-    choice.arrival().reflections = 16;
     EXPECT_TRUE(choice.status().used);
     choice.sky.satellites.front().elevation = choice.rule.elevation_mask - Angle::degrees(1e-9);
     EXPECT_FALSE(choice.status().used);
@@ -46,13 +45,6 @@ TEST(Selection, RefusesWeakUnhealthyAndUnheard) {
     unhealthy.sky.satellites.front().healthy = false;
     EXPECT_FALSE(unhealthy.status().used);
     EXPECT_TRUE(unhealthy.status().cn0);
-}
-
-TEST(Selection, SeventeenReflectionsMakeASatelliteInvisible) {
-    OneChoice choice;
-    choice.arrival().reflections = 17;
-    EXPECT_FALSE(choice.status().used);
-    EXPECT_FALSE(choice.status().cn0);
 }
 
 TEST(Selection, HiddenSatelliteIsUsedOnlyWhereTheRuleSaysSo) {

@@ -50,6 +50,11 @@ SkyView ionosphere_sky() {
 
 SkyDirection direction_to(const SatelliteInView& satellite) { return {satellite.azimuth, satellite.elevation}; }
 
+// NTCM-G leaves the antenna's height out.
+PiercePoint pierce_point_from_ground(const TruthState& truth, const SatelliteInView& satellite) {
+    return pierce_point({}, {truth.geodetic.latitude, truth.geodetic.longitude, {}}, direction_to(satellite));
+}
+
 // Holds every delay of an effect against an expectation, over a day.
 template <class Expected>
 void expect_delays(IonosphereDelay& effect, Expected&& expected) {
@@ -78,9 +83,28 @@ TEST(IonosphereTruth, NtcmGIsTheFormulaWithTheCoefficientsOfTheBroadcast) {
     IonosphereDelay effect = ionosphere_effect(IonosphereModel::ntcm_g);
     expect_delays(effect, [](const SatelliteInView& satellite, const TruthState& truth, Hertz carrier) {
         const IonosphereTime when = IonosphereTime::of(to_utc(truth.time, LeapSeconds::announced()));
-        const auto content = ntcm_g_content({90, 0.4, 0.01}, truth.geodetic, direction_to(satellite), when);
+        const auto content =
+            ntcm_g_content({90, 0.4, 0.01}, pierce_point_from_ground(truth, satellite), satellite.elevation, when);
         return ionosphere_group_delay(content, carrier);
     });
+}
+
+// Where receivers follow the published geometry, whose longitudes are wrong (NtcmG, …BeyondThePole…).
+TEST(IonosphereTruth, NtcmGGoesOverThePoleWhereTheRayDoes) {
+    IonosphereDelay effect = ionosphere_effect(IonosphereModel::ntcm_g);
+    SkyView sky;
+    sky.satellites.push_back(test::satellite_at({Constellation::galileo, 3}, -21, 15));
+    const SatelliteInView& satellite = sky.satellites.front();
+    const TruthState truth = test::truth_of(Geodetic::degrees(82.49, -62.34, 0), test::april_noon);
+    const IonosphereTime when = IonosphereTime::of(to_utc(truth.time, LeapSeconds::announced()));
+    const auto delay = [&](const PiercePoint& pierce) {
+        const auto content = ntcm_g_content({90, 0.4, 0.01}, pierce, satellite.elevation, when);
+        return ionosphere_group_delay(content, Hertz(carrier_frequency_l1)).value();
+    };
+    const double exact = delay(pierce_point({}, truth.geodetic, direction_to(satellite)));
+    const double published = delay(published_pierce_point({}, truth.geodetic, direction_to(satellite)));
+    EXPECT_GT(std::abs(exact - published), 0.1);
+    EXPECT_NEAR(test::after(effect, sky, truth).satellites[0].iono_delay.value(), exact, 1e-9);
 }
 
 TEST(IonosphereTruth, ConstantContentIsMappedByTheShell) {
@@ -270,7 +294,7 @@ TEST(IonosphereTruth, WithoutBroadcastTheParametersServe) {
     EXPECT_EQ(test::after(klobuchar, sky, truth).satellites[0].iono_delay,
               klobuchar_delay(defaults.klobuchar, truth.geodetic, direction_to(first), truth.time).slant);
     const auto content = [&](const EffectiveIonisation& level) {
-        return ntcm_g_content(level, truth.geodetic, direction_to(first), IonosphereTime{100, 10});
+        return ntcm_g_content(level, pierce_point_from_ground(truth, first), first.elevation, IonosphereTime{100, 10});
     };
     EXPECT_GT(content(defaults.ionisation), content({64, 0, 0}));
     EXPECT_LT(content(defaults.ionisation), content({80, 0, 0}));

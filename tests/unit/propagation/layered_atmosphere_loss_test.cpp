@@ -90,5 +90,39 @@ TEST(LayeredAtmosphereLoss, RiometerAbsorptionFallsWithFrequencySquared) {
     EXPECT_GT(arrival_through(atmosphere, 5).iono_loss, Decibels(0.25 + 4 * 0.0003626));
 }
 
+TEST(LayeredAtmosphereLoss, NoIonosphereAbsorbsAboveItsLowerEdge) {
+    AtmosphereParameters atmosphere;
+    atmosphere.ionosphere_loss = Decibels(0.25);
+    LayeredAtmosphereLoss loss(atmosphere);
+    OneSatellite below(Angle::degrees(40), Metres(20.2e6), Geodetic::degrees(46.4774, 30.7326, 59999));
+    OneSatellite above(Angle::degrees(40), Metres(20.2e6), Geodetic::degrees(46.4774, 30.7326, 60000));
+    EXPECT_EQ(below.after(loss).iono_loss, Decibels(0.25));
+    EXPECT_EQ(above.after(loss).iono_loss, Decibels(0));
+}
+
+// One layer at the zenith, so that the loss is the specific attenuation times its thickness.
+TEST(LayeredAtmosphereLoss, IsThatOfEachSatellitesOwnCarrier) {
+    AtmosphereParameters atmosphere;
+    atmosphere.layers = {{"air", Metres(0), Metres(10000), 7.5, true, ConcentrationMode::fixed, 0.6}};
+    atmosphere.clouds.push_back({"", Metres(1000), Metres(3000), 1.0});
+    atmosphere.rain.rate_mm_h = 30;
+    atmosphere.riometer_absorption_30mhz = Decibels(1);
+    LayeredAtmosphereLoss loss(atmosphere);
+    for (const double f : {1575.42e6, 1602e6, 1561.098e6, 1176.45e6}) {
+        SCOPED_TRACE(f);
+        const Hertz carrier(f);
+        OneSatellite scene(Angle::degrees(90), Metres(22e6), sea_level_place);
+        scene.arrival().signals.push_back({Signal::l1, carrier, Seconds(0), Decibels(0)});
+        const Arrival& arrival = scene.after(loss);
+        const double gas =
+            oxygen_attenuation(carrier, 0.6, 0.277).value() + vapour_attenuation(carrier, 7.5, 0.6).value();
+        EXPECT_NEAR(arrival.gas_loss.value(), 10 * gas, 1e-9);
+        EXPECT_NEAR(arrival.cloud_loss.value(), 2 * vapour_attenuation(carrier, 1.0, 1.0).value(), 1e-9);
+        EXPECT_NEAR(arrival.rain_loss.value(),
+                    4 * rain_attenuation(atmosphere.rain, carrier, Angle::degrees(90)).value(), 1e-9);
+        EXPECT_NEAR(arrival.iono_loss.value(), std::pow(30e6 / f, 2), 1e-9);
+    }
+}
+
 }  // namespace
 }  // namespace skyloop

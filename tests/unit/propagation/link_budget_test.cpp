@@ -43,7 +43,8 @@ TEST(LinkBudget, EveryOracleRow) {
         EXPECT_NEAR(arrival.gas_loss.value(), row.number("L_atm_dB"), tolerance);
         EXPECT_NEAR(arrival.cloud_loss.value(), row.number("L_clouds_dB"), tolerance);
         EXPECT_NEAR(arrival.reflection_loss.value(), row.number("L_reflections_dB"), tolerance);
-        EXPECT_NEAR(received_power(arrival, link).value(), row.number("P_rec_dBW"), tolerance);
+        ASSERT_TRUE(arrival.received_power);
+        EXPECT_NEAR(arrival.received_power->value(), row.number("P_rec_dBW"), tolerance);
         EXPECT_NEAR(budget.noise_density_dbw_hz(), row.number("P_ambient_dBW"), tolerance);
         ASSERT_TRUE(arrival.cn0);
         EXPECT_NEAR(arrival.cn0->value(), row.number("snr_dB"), tolerance);
@@ -67,6 +68,27 @@ TEST(LinkBudget, HiddenSatelliteHasNoSignal) {
     scene.arrival().paths = 0;
     scene.arrival().line_of_sight = false;
     EXPECT_FALSE(scene.after(budget).cn0);
+    EXPECT_FALSE(scene.after(budget).received_power);
+}
+
+TEST(LinkBudget, APathWithTooManyReflectionsIsNone) {
+    for (const int most : {0, 3, 16}) {
+        LinkBudgetParameters link;
+        link.max_reflections = most;
+        LinkBudget budget(link, Decibels(1));
+        for (const int more : {0, 1}) {
+            OneSatellite scene(Angle::degrees(40), Metres(21e6), Geodetic::degrees(46, 30, 0));
+            scene.arrival().line_of_sight = false;
+            scene.arrival().reflections = most + more;
+            scene.arrival().excess_path = Metres(30);
+            const Arrival& arrival = scene.after(budget);
+            EXPECT_EQ(arrival.paths, 1 - more);
+            EXPECT_EQ(arrival.cn0.has_value(), more == 0);
+            EXPECT_EQ(arrival.received_power.has_value(), more == 0);
+            EXPECT_EQ(arrival.excess_path, Metres(more == 0 ? 30 : 0));
+            EXPECT_EQ(reception_of(arrival), more == 0 ? Reception::reflected : Reception::blocked);
+        }
+    }
 }
 
 }  // namespace

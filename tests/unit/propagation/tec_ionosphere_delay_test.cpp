@@ -69,5 +69,33 @@ TEST(TecIonosphereDelay, ContentOfMapsIsThatAtThePiercePointWithTheObliquityOfTh
                 1e-9);
 }
 
+TEST(TecIonosphereDelay, FallsWithTheSquareOfTheCarrier) {
+    TecIonosphereDelay effect(Tecu(20));
+    for (const double f : {1575.42e6, 1602e6 - 7 * 562.5e3, 1561.098e6, 1176.45e6}) {
+        OneSatellite scene(Angle::degrees(33), Metres(22e6), Geodetic::degrees(-30, 150, 20));
+        scene.arrival().signals.push_back({Signal::l1, Hertz(f), Seconds(0), Decibels(0)});
+        const double ratio = 1575.42e6 / f;
+        EXPECT_NEAR(scene.after(effect).iono_delay.value(),
+                    tec_delay(Tecu(20), Angle::degrees(33)).value() * ratio * ratio, 1e-12);
+    }
+}
+
+TEST(TecIonosphereDelay, EndsAtTheShell) {
+    const auto delay_at = [](TecIonosphereDelay effect, double height) {
+        OneSatellite scene(Angle::degrees(30), Metres(22e6), Geodetic::degrees(40, -100, height));
+        scene.truth.time = to_gps_time(2111, 593100.0);
+        return scene.after(effect).iono_delay.value();
+    };
+    const KlobucharCoefficients broadcast{{4.6566e-09, 1.4901e-08, -5.9605e-08, -1.1921e-07},
+                                          {81920.0, 98304.0, -65536.0, -524290.0}};
+    EXPECT_GT(delay_at(TecIonosphereDelay(Tecu(20)), 349999), 1);
+    EXPECT_EQ(delay_at(TecIonosphereDelay(Tecu(20)), 350000), 0);
+    EXPECT_GT(delay_at(TecIonosphereDelay(broadcast), 349999), 1);
+    EXPECT_EQ(delay_at(TecIonosphereDelay(broadcast), 350000), 0);
+    const IonosphereMaps maps = sloping_maps(to_gps_time(2111, 593100.0) - std::chrono::hours(1));
+    EXPECT_GT(delay_at(TecIonosphereDelay(maps), 449999), 1);
+    EXPECT_EQ(delay_at(TecIonosphereDelay(maps), 450000), 0);
+}
+
 }  // namespace
 }  // namespace skyloop

@@ -58,6 +58,23 @@ TEST(RangeCorrections, TakesEachSystemsOwnIonosphereWhereItIsHeard) {
     EXPECT_EQ(gps_alone.at(odessa, noon).ionosphere(Constellation::gps, {Angle(), Angle::degrees(-3)}, l1), Metres(0));
 }
 
+// The longitude by an arcsine, which stays on this side of the pole.
+TEST(RangeCorrections, FollowsThePublishedGeometryOfGalileosIonosphere) {
+    BroadcastIonosphere heard;
+    heard.galileo = std::array<double, 3>{100, 0.3, 0.002};
+    const Geodetic arctic = Geodetic::degrees(82.49, -62.34, 78);
+    const SkyDirection over_the_pole{Angle::degrees(-21), Angle::degrees(15)};
+    const auto delay = [&](const PiercePoint& pierce) {
+        const IonosphereTime when = IonosphereTime::of(to_utc(noon, LeapSeconds::announced()));
+        return ionosphere_group_delay(ntcm_g_content({100, 0.3, 0.002}, pierce, over_the_pole.elevation, when), l1);
+    };
+    const Geodetic ground{arctic.latitude, arctic.longitude, {}};
+    const Metres published = delay(published_pierce_point({}, ground, over_the_pole));
+    const RangeCorrections corrections({}, {heard});
+    EXPECT_EQ(corrections.at(arctic, noon).ionosphere(Constellation::galileo, over_the_pole, l1), published);
+    EXPECT_GT(std::abs((published - delay(pierce_point({}, ground, over_the_pole))).value()), 0.01);
+}
+
 // What stands behind the pseudoranges of oracles/spp: the coefficients of their headers, and where their receivers are.
 constexpr KlobucharCoefficients oracle_air{{4.6566e-9, 1.4901e-8, -5.9605e-8, -1.1921e-7},
                                            {8.1920e4, 9.8304e4, -6.5536e4, -5.2429e5}};

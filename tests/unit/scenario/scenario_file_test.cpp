@@ -71,7 +71,7 @@ TEST(ScenarioFile, EveryModelKeyLandsInItsField) {
     const ModelSettings m = scenario_of(test::every_key_text).model;
     EXPECT_EQ(m.sensor_model, ErrorModelKind::whole_path);
     EXPECT_EQ(m.baseline.snr_cutoff, DbHz(6.5));
-    EXPECT_EQ(m.baseline.max_reflections, 3);
+    EXPECT_EQ(m.link.max_reflections, 3);
     EXPECT_EQ(m.link.reflection_loss, Decibels(4.5));
     EXPECT_EQ(m.link.power_mode, PowerMode::received_spec);
     EXPECT_EQ(m.link.satellite_power, DecibelWatts(27.5));

@@ -12,8 +12,9 @@
 
 namespace skyloop::inline run {
 
-/// A sentence for the keys that the scenario's model does not take, and one for each rain or cloud that lies below an
-/// antenna that stays where it is. @param geoid null: the ellipsoid stands in for the sea
+/// A sentence for the keys that the scenario's model does not take, one for each rain or cloud that lies below an
+/// antenna that stays where it is, and one for layers of the air that overlap. @param geoid null: the ellipsoid stands
+/// in for the sea
 std::vector<std::string> weather_warnings(const Scenario& scenario, const Geoid* geoid);
 
 /// A receiver of a scenario on its path, from the start of the run to its end; nothing: for ever.
