@@ -9,14 +9,14 @@ namespace {
 
 const GpsTime osnma_begin = to_gps_time(2300, 3 * 86400.0 + 15 * 3600 + 600);
 
-// Ten minutes, of which the fault is there from the fifth on.
+// Ten minutes, of which the fault is there from the fifth on; subframes of E1-B are a second late.
 test::OsnmaVerdict verdict_with(const std::string& name, const test::FaultValues& values = {}) {
     test::OsnmaListener listener({5, osnma_begin});
     test::OsnmaClient client;
     client.public_keys[1] = test::octets_of(test::point_of(listener.keys->tree_xml(), 1));
     const Fault fault = test::signal_fault(name, values);
     listener.listen(client, osnma_begin, std::chrono::minutes(10), [&](Epoch& epoch) {
-        if (epoch.subframes[0].end > osnma_begin + std::chrono::minutes(5)) fault.epoch(epoch, FaultMoment());
+        if (epoch.subframes[0].end > osnma_begin + std::chrono::seconds(301)) fault.epoch(epoch, FaultMoment());
     });
     return client.judge();
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "navigation_text.hpp"
+#include "base/time/utc_time.hpp"
 #include "support/oracle_table.hpp"
 #include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
