@@ -38,6 +38,7 @@ FENCES = [
     ("hidapi", ("hidapi",), {"hid"}),
     ("Boost", ("boost/",), {"control", "ntrip", "src/receiver/pvt/integrity.cpp", "src/world/propagation/surroundings_stretch.cpp", "src/campaigns/campaign/campaign_design.cpp", "src/campaigns/campaign_report/statistical_tests.cpp"}),
     ("libcurl", ("curl/",), {"fetch"}),
+    ("OpenSSL", ("openssl/",), {"src/world/osnma/cryptography.cpp"}),
     ("libmd", ("sha2.h", "sha256.h"), {"src/campaigns/campaign/sha256.cpp"}),
     ("SQLite", ("sqlite3",), {"src/campaigns/campaign/campaign_database.cpp", "campaign_report"}),
     ("the C library", ("stddef.h", "stdint.h"), {"include/skyloop.h"}),

@@ -14,10 +14,23 @@ namespace {
 using namespace skyloop;
 
 // The records of FourSystems with reference times that the messages can say: whole 8 s of BDT, quarters of UTC.
+// Two geostationary satellites are among them.
 class Sendable : public test::FourSystems {
 public:
+    [[nodiscard]] std::vector<SatelliteId> satellites() const override {
+        auto all = test::FourSystems::satellites();
+        all.push_back({Constellation::beidou, 3});
+        all.push_back({Constellation::beidou, 60});
+        return all;
+    }
     [[nodiscard]] std::optional<Ephemeris> ephemeris(SatelliteId id, GpsTime time) const override {
-        auto record = test::FourSystems::ephemeris(id, time);
+        auto record = test::FourSystems::ephemeris(is_beidou_geo(id) ? SatelliteId{id.constellation, 14} : id, time);
+        if (is_beidou_geo(id)) {
+            auto& geostationary = std::get<KeplerEphemeris>(*record);
+            geostationary.satellite = id;
+            geostationary.sqrt_a = 6493.4;
+            geostationary.i0 = 0.09;
+        }
         if (auto* kepler = std::get_if<KeplerEphemeris>(&*record)) {
             if (id.constellation == Constellation::beidou) {
                 kepler->toe += std::chrono::seconds(14);
@@ -88,7 +101,7 @@ int main(int argc, char** argv) {
             RxmSfrbx frame;
             frame.gnss_id = ubx_system(s.satellite.constellation);
             frame.sv_id = static_cast<std::uint8_t>(s.satellite.number);
-            frame.sig_id = frame.gnss_id == 2 ? 1 : 0;
+            frame.sig_id = frame.gnss_id == 2 || is_beidou_geo(s.satellite) ? 1 : 0;
             frame.freq_id = static_cast<std::uint8_t>(s.frequency_channel + 7);
             frame.version = 2;
             frame.words = s.words;

@@ -105,7 +105,7 @@ class Subframes(unittest.TestCase):
         sent = {name: record for name, record in records(folder / "sent.rnx").items() if name[0] != "E"}
         found = found_by_convbin(folder, folder / "heard.ubx")
         self.assertEqual(sorted(found), sorted(sent))
-        self.assertEqual(len(sent), 72)
+        self.assertEqual(len(sent), 74)
         for satellite, (epoch, rows) in sent.items():
             self.assertEqual([int(x) for x in found[satellite][0]], [int(x) for x in epoch], satellite)
             for place, tolerance in (STATE if satellite[0] == "R" else KEPLER).items():

@@ -7,7 +7,7 @@
 #include "base/core/bytes.hpp"
 #include "firmware/septentrio/sbf_messages.hpp"
 #include "receiver/protocol/sbf_raw_blocks.hpp"
-#include "world/gnss/broadcast_galileo_beidou.hpp"
+#include "world/gnss/broadcast_galileo.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 
 namespace skyloop::firmware {
@@ -24,15 +24,16 @@ SbfTime sent_at(GpsTime end) {
 }
 
 std::uint16_t block_of_pages(const Subframe& message) {
+    const bool l2 = message.signal == Signal::l2, l5 = message.signal == Signal::l5;
     switch (message.satellite.constellation) {
         case Constellation::gps:
-            return SbfGpsRawCa::block_number;
+            return l2 ? SbfGpsRawL2c::block_number : l5 ? SbfGpsRawL5::block_number : SbfGpsRawCa::block_number;
         case Constellation::qzss:
-            return SbfQzsRawL1Ca::block_number;
+            return l2 ? SbfQzsRawL2c::block_number : l5 ? SbfQzsRawL5::block_number : SbfQzsRawL1Ca::block_number;
         case Constellation::glonass:
             return SbfGloRawCa::block_number;
         case Constellation::galileo:
-            return SbfGalRawInav::block_number;
+            return l5 ? SbfGalRawFnav::block_number : SbfGalRawInav::block_number;
         case Constellation::beidou:
             return SbfBdsRaw::block_number;
         default:
@@ -75,16 +76,23 @@ std::vector<std::uint32_t> string_bits(std::vector<std::uint32_t> words) {
     return words;
 }
 
+// The 300 bits of CNAV.
+std::vector<std::uint32_t> cnav_bits(std::vector<std::uint32_t> words) {
+    words.back() &= ~0u << 20;
+    return words;
+}
+
 std::vector<std::uint32_t> sbf_bits(const Subframe& message) {
+    const bool second = message.signal == Signal::l2 || message.signal == Signal::l5;
     switch (message.satellite.constellation) {
         case Constellation::galileo:
-            return inav_bits(message.words);
+            return second ? message.words : inav_bits(message.words);
         case Constellation::glonass:
             return string_bits(message.words);
         case Constellation::beidou:
             return d1_bits(message.words);
         default:
-            return lnav_bits(message.words);
+            return second ? cnav_bits(message.words) : lnav_bits(message.words);
     }
 }
 
@@ -104,22 +112,17 @@ Bytes raw_page(const Subframe& message, const NavigationState& state) {
     return encode_sbf(page);
 }
 
-Bytes page_of(std::uint16_t number, const Subframe& message, const NavigationState& state) {
-    switch (number) {
-        case SbfGpsRawCa::block_number:
-            return raw_page<SbfGpsRawCa>(message, state);
-        case SbfQzsRawL1Ca::block_number:
-            return raw_page<SbfQzsRawL1Ca>(message, state);
-        case SbfGloRawCa::block_number:
-            return raw_page<SbfGloRawCa>(message, state);
-        case SbfGalRawInav::block_number:
-            return raw_page<SbfGalRawInav>(message, state);
-        case SbfBdsRaw::block_number:
-            return raw_page<SbfBdsRaw>(message, state);
-        default:
-            return {};
+// The makers of blocks of pages, by their numbers.
+template <class... Pages>
+struct PageBlocks {
+    static Bytes of(std::uint16_t number, const Subframe& message, const NavigationState& state) {
+        Bytes block;
+        ((number == Pages::block_number ? void(block = raw_page<Pages>(message, state)) : void()), ...);
+        return block;
     }
-}
+};
+using KnownPages = PageBlocks<SbfGpsRawCa, SbfGpsRawL2c, SbfGpsRawL5, SbfQzsRawL1Ca, SbfQzsRawL2c, SbfQzsRawL5,
+                              SbfGloRawCa, SbfGalRawInav, SbfGalRawFnav, SbfBdsRaw>;
 
 float semicircles(double radians) { return static_cast<float>(radians * per_semicircle); }
 
@@ -291,7 +294,8 @@ std::vector<Bytes> sbf_raw_pages(std::uint16_t number, const NavigationState& st
     std::vector<Bytes> blocks;
     for (const Subframe& message : state.epoch.subframes)
         if (block_of_pages(message) == number)
-            if (Bytes block = page_of(number, message, state); !block.empty()) blocks.push_back(std::move(block));
+            if (Bytes block = KnownPages::of(number, message, state); !block.empty())
+                blocks.push_back(std::move(block));
     return blocks;
 }
 

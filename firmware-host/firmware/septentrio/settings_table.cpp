@@ -100,7 +100,7 @@ constexpr std::string_view support_blocks =
     "RFStatus+GALAuthStatus";
 constexpr std::array<std::pair<std::string_view, std::string_view>, 18> block_groups{{
     {"Measurements", "MeasEpoch+MeasExtra+EndOfMeas"},
-    {"RawNavBits", "GPSRawCA+GLORawCA+GALRawINAV+BDSRaw+QZSRawL1CA"},
+    {"RawNavBits", "GPSRawCA+GPSRawL2C+GPSRawL5+GLORawCA+GALRawFNAV+GALRawINAV+BDSRaw+QZSRawL1CA+QZSRawL2C+QZSRawL5"},
     {"GPS", "GPSNav"},
     {"GLO", "GLONav"},
     {"GAL", "GALNav"},

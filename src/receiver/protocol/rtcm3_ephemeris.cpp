@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "detail/rtcm3_ephemeris_fields.hpp"
-#include "world/gnss/broadcast_galileo_beidou.hpp"
+#include "world/gnss/broadcast_galileo.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 
 namespace skyloop::inline receiver {

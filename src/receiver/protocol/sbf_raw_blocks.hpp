@@ -130,6 +130,12 @@ constexpr std::string_view sbf_page_name(std::uint16_t number) {
     switch (number) {
         case 4017:
             return "GPSRawCA";
+        case 4018:
+            return "GPSRawL2C";
+        case 4019:
+            return "GPSRawL5";
+        case 4022:
+            return "GALRawFNAV";
         case 4023:
             return "GALRawINAV";
         case 4026:
@@ -138,6 +144,10 @@ constexpr std::string_view sbf_page_name(std::uint16_t number) {
             return "BDSRaw";
         case 4066:
             return "QZSRawL1CA";
+        case 4067:
+            return "QZSRawL2C";
+        case 4068:
+            return "QZSRawL5";
         default:
             return "";
     }
@@ -166,6 +176,13 @@ using SbfGalRawInav = SbfRawPage<4023, 8>;
 using SbfGloRawCa = SbfRawPage<4026, 3>;
 using SbfBdsRaw = SbfRawPage<4047, 10>;
 using SbfQzsRawL1Ca = SbfRawPage<4066, 10>;
+/// The 300 bits of a CNAV message.
+using SbfGpsRawL2c = SbfRawPage<4018, 10>;
+using SbfGpsRawL5 = SbfRawPage<4019, 10>;
+using SbfQzsRawL2c = SbfRawPage<4067, 10>;
+using SbfQzsRawL5 = SbfRawPage<4068, 10>;
+/// The 244 bits of a page of F/NAV.
+using SbfGalRawFnav = SbfRawPage<4022, 8>;
 
 /// The orbit as GPSNav, QZSNav and BDSNav have it.
 struct SbfKeplerOrbit {

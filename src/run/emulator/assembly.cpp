@@ -317,7 +317,8 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
                                                      : FixMaker(measuring_receiver(scenario, setup, last_place));
     const RayTracedScene* city = add_city(*effects, scenario, setup);
     add_obstacles(*effects, setup);
-    return Simulation({std::move(path), setup.navigation, std::move(*effects), std::move(fix_maker), city});
+    return Simulation(
+        {std::move(path), setup.navigation, std::move(*effects), std::move(fix_maker), city, setup.osnma});
 }
 
 std::vector<std::filesystem::path> board_folders(const DataFolders& data) {

@@ -139,6 +139,7 @@ struct SimulationSetup {
     double geoid_step_deg = 0;                           ///< the same
     /// Of the modern model; receivers of one run share it.
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
+    std::shared_ptr<const OsnmaKeys> osnma{};  ///< null: Galileo's pages are not authenticated
 };
 /// The world of a scenario and its way to a fix. Receivers of one run share the world and its errors; what their own
 /// electronics add differs. Fails with `input` when scenario and world do not fit each other.

@@ -202,7 +202,6 @@ Result<void> plug_in_corrections(PlannedStation& station, const WireRequest& wir
 }
 
 SimulationSetup simulation_setup(const SharedParts& shared, std::size_t index, const firmware::Receiver& receiver) {
-    const double rate = 1e9 / static_cast<double>(receiver.settings().navigation_period.count());
     return {shared.navigation,
             shared.geoid,
             shared.start,
@@ -210,11 +209,12 @@ SimulationSetup simulation_setup(const SharedParts& shared, std::size_t index, c
             index,
             shared.scene,
             shared.mode.embedding,
-            rate,
+            1e9 / static_cast<double>(receiver.settings().navigation_period.count()),
             receiver.board().timing.warm_start,
             receiver.board().modern,
             receiver.board().geoid_step_deg,
-            shared.gas_losses};
+            shared.gas_losses,
+            shared.osnma};
 }
 
 void remember_place(const SharedParts& shared, std::size_t index, const Simulation& simulation,
@@ -388,10 +388,10 @@ Result<void> check_state(const Station::Parts& parts, const SharedParts& shared,
 }
 
 Result<void> add_recorder(Station::Parts& parts, const SharedParts& shared, std::size_t index) {
-    const std::filesystem::path& folder = *shared.mode.record;
-    auto recorder = Recorder::claim(recording_of(folder, index));
+    auto recorder = Recorder::claim(recording_of(*shared.mode.record, index));
     if (!recorder) return fail(recorder.error());
     if (parts.simulation.measures()) recorder->add_rinex(rinex_setup(parts, shared.start));
+    recorder->add_files(osnma_files(shared.osnma.get()));
     parts.recorder = std::move(*recorder);
     return {};
 }

@@ -34,11 +34,14 @@ Result<void> Recorder::begin(const Beginning& beginning) {
     // Whatever becomes of this run, it must not leave the summary of the run before.
     std::filesystem::remove(folder() / "run.json", reason);
     // Nor its verdicts, which a run leaves at its end, or its observations. What no run has left is the user's.
-    for (const char* name : {"junit.xml", "verdicts.json", "commands.jsonl", "observations.rnx", "navigation.rnx"})
+    for (const char* name : {"junit.xml", "verdicts.json", "commands.jsonl", "observations.rnx", "navigation.rnx",
+                             "osnma_keys.xml", "osnma_public_key_1.pem", "osnma_public_key_2.pem"})
         if (beginning.former) std::filesystem::remove(folder() / name, reason);
     if (const auto tables = create_tables(); !tables) return tables;
     if (const auto ports = create_ports(beginning.wires); !ports) return ports;
     if (beginning.former) remove_ports_from(beginning.wires);
+    for (const auto& [name, text] : files_)
+        if (const auto written = replace_file(folder() / name, text); !written) return written;
     if (!rinex_setup_) return {};
     auto rinex = RinexRecording::create(folder(), *rinex_setup_);
     if (!rinex) return fail(rinex.error());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +30,8 @@ public:
     static Result<Recorder> claim(const std::filesystem::path& folder);
     /// There will be observations.rnx and navigation.rnx, for a receiver that measures. Before begin().
     void add_rinex(const RinexRecordingSetup& setup);
+    /// Files that begin() makes besides, by their names, as they are.
+    void add_files(std::map<std::string, std::string> files) { files_ = std::move(files); }
     /// Makes the files, in the place of those of a former run. Comes before anything is recorded.
     struct Beginning {
         std::size_t wires = 1;  ///< how many sets of port files there are to be: port0, port1, …
@@ -67,6 +70,7 @@ private:
     ClaimedFolder folder_;
     OutputFile fixes_, satellites_;
     std::vector<PortFiles> ports_;
+    std::map<std::string, std::string> files_;
     std::unique_ptr<RinexRecordingSetup> rinex_setup_;  // null: it measures nothing
     std::unique_ptr<RinexRecording> rinex_;
     std::optional<Error> summary_failure_;

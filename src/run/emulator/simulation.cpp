@@ -43,7 +43,9 @@ FrontEnd front_end(const Arrivals& arrivals) {
 
 }  // namespace
 
-Simulation::Simulation(Parts parts) : parts_(std::move(parts)) {}
+Simulation::Simulation(Parts parts) : parts_(std::move(parts)) {
+    if (parts_.osnma) subframes_.authenticate(parts_.osnma);
+}
 
 SkyView Simulation::view(const TruthState& truth) const { return observe_sky(truth, *parts_.navigation); }
 

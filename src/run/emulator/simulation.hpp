@@ -38,7 +38,8 @@ public:
         std::shared_ptr<const NavigationSource> navigation;       ///< that the antennas of a run share
         std::vector<std::unique_ptr<PropagationEffect>> effects;  ///< in the order in which they are applied
         FixMaker fix_maker;
-        const RayTracedScene* city = nullptr;  ///< one of the effects; null: nothing stands around
+        const RayTracedScene* city = nullptr;      ///< one of the effects; null: nothing stands around
+        std::shared_ptr<const OsnmaKeys> osnma{};  ///< of Galileo's pages; null: they are not authenticated
     };
     explicit Simulation(Parts parts);
 

@@ -93,6 +93,8 @@ struct SkySettings {
     std::optional<Angle> elevation_mask;            ///< nothing: the board's; of sensor models 5°
     std::optional<EphemerisRule> ephemeris_rule;    ///< nothing: the model's own rule
     std::optional<Seconds> ephemeris_validity;      ///< nothing: each system's own
+    bool osnma = false;                             ///< Galileo's pages are authenticated
+    std::optional<Seconds> osnma_new_key;           ///< after the start, of a change of the public key; nothing: none
 };
 
 /// Paths are kept as what was asked for; they become a Trajectory when the start time is known. The heading, clockwise

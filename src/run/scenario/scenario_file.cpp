@@ -155,6 +155,13 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
              {"the newest healthy record that is not of the future, or the nearest one", "by the model"});
     sky.quantity("ephemeris_validity_s", settings.ephemeris_validity, {1, 14 * 86400.0},
                  {"largest age of any record", "by the system"});
+    sky.boolean("osnma", settings.osnma,
+                "Galileo's E1-B pages are authenticated by OSNMA with test keys, which the recording's folder tells");
+    sky.where(settings.osnma, "with osnma = true", [&] {
+        sky.quantity(
+            "osnma_new_key_s", settings.osnma_new_key, {0, longest_run_s},
+            {"when the second public key signs, after the start; announced a quarter of an hour before", "never"});
+    });
 }
 
 // What a run may be refused for when it is put together.

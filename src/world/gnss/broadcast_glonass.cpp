@@ -3,18 +3,13 @@
 #include <bit>
 
 #include "detail/broadcast_fields.hpp"
+#include "detail/glonass_strings.hpp"
 
 namespace skyloop::inline world {
 namespace {
 
-constexpr std::int64_t string_s = 2, frame_s = 30, superframe_s = 150, moscow_s = 3 * 3600;
+constexpr std::int64_t string_s = 2, superframe_s = 150, moscow_s = 3 * 3600;
 constexpr int string_bits = 85, check_bits = 8;
-
-// Seconds of GLONASS time, UTC + 3 h, since 1980-01-06 00:00 of its own.
-std::int64_t glonass_seconds(GpsTime time, const LeapSeconds& leap_seconds) {
-    return std::chrono::floor<std::chrono::seconds>(time.time_since_epoch()).count() - leap_seconds.offset(time) +
-           moscow_s;
-}
 
 // Where a date lies in the four years that begin with a leap year (table 4.5, N_T and N_4).
 struct FourYears {
@@ -57,7 +52,7 @@ struct StringFields {
         bits.put(of_day % half_hour_s == 0 ? half_hour : as_before, 2);
         bits.put_signed(of_day / 3600, 5);
         bits.put_signed(of_day / 60 % 60, 6);
-        bits.put_signed(of_day / frame_s % 2, 1);
+        bits.put_signed(of_day / glonass_frame_s % 2, 1);
         put_axis(bits, r, 0);
     }
     void second(BitWriter& bits) const {
@@ -74,7 +69,7 @@ struct StringFields {
     void third(BitWriter& bits) const {
         constexpr std::uint64_t modern = 0b11;  // P: both corrections from the satellite itself
         constexpr std::int64_t last_frame = 4;
-        bits.put(start % superframe_s / frame_s == last_frame ? 0 : 1,
+        bits.put(start % superframe_s / glonass_frame_s == last_frame ? 0 : 1,
                  1);  // P3: almanacs of five satellites, or of four
         put_sign_magnitude(bits, r.clock_drift, 11, power_of_two(-40));
         bits.put(0, 1);
@@ -121,29 +116,45 @@ std::uint64_t hamming(const BitWriter& bits) {
 
 }  // namespace
 
+std::int64_t glonass_seconds(GpsTime time, const LeapSeconds& leap_seconds) {
+    return std::chrono::floor<std::chrono::seconds>(time.time_since_epoch()).count() - leap_seconds.offset(time) +
+           moscow_s;
+}
+
+GlonassWords whole_glonass_string(int string, const BitWriter& content, GpsTime end, const LeapSeconds& leap_seconds) {
+    const std::int64_t sent = glonass_seconds(end, leap_seconds) - string_s;
+    BitWriter bits;
+    bits.put(0, 1);
+    bits.put_signed(string, 4);
+    bits.put(content.field(0, 64), 64);
+    bits.put(content.field(64, 8), 8);
+    bits.put(hamming(bits), check_bits);
+    const std::int64_t of_week = sent % seconds_per_week;
+    const auto superframe = static_cast<std::uint32_t>(of_week / superframe_s) + 1;
+    const auto word = [&bits](std::size_t at) { return static_cast<std::uint32_t>(bits.field(32 * at, 32)); };
+    return {word(0), word(1), word(2), superframe << 16 | static_cast<std::uint32_t>(glonass_frame(sent))};
+}
+
+int glonass_frame(std::int64_t seconds) {
+    return static_cast<int>(seconds % seconds_per_week % superframe_s / glonass_frame_s) + 1;
+}
+
 std::optional<int> glonass_string_ending(GpsTime end, const LeapSeconds& leap_seconds) {
     if (end.time_since_epoch() % std::chrono::seconds(1) != Nanoseconds(0)) return std::nullopt;
     const std::int64_t start = glonass_seconds(end, leap_seconds) - string_s;
     if (start < 0 || start % string_s != 0) return std::nullopt;
-    return static_cast<int>(start % frame_s / string_s) + 1;
+    return static_cast<int>(start % glonass_frame_s / string_s) + 1;
 }
 
 GlonassWords glonass_string(const GlonassEphemeris& record, int string, GpsTime end, const LeapSeconds& leap_seconds) {
     const std::int64_t sent = glonass_seconds(end, leap_seconds) - string_s;
-    const StringFields fields{record, sent - sent % frame_s, glonass_seconds(record.toe, leap_seconds)};
-    BitWriter bits;
-    bits.put(0, 1);
-    bits.put_signed(string, 4);
+    const StringFields fields{record, sent - sent % glonass_frame_s, glonass_seconds(record.toe, leap_seconds)};
+    BitWriter content;
     using Part = void (StringFields::*)(BitWriter&) const;
     constexpr std::array<Part, 5> parts{&StringFields::first, &StringFields::second, &StringFields::third,
                                         &StringFields::fourth, &StringFields::fifth};
-    (fields.*parts.at(static_cast<std::size_t>(string - 1)))(bits);
-    bits.put(hamming(bits), check_bits);
-    const std::int64_t of_week = sent % seconds_per_week;
-    const auto superframe = static_cast<std::uint32_t>(of_week / superframe_s) + 1;
-    const auto frame = static_cast<std::uint32_t>(of_week % superframe_s / frame_s) + 1;
-    const auto word = [&bits](std::size_t i) { return static_cast<std::uint32_t>(bits.field(32 * i, 32)); };
-    return {word(0), word(1), word(2), superframe << 16 | frame};
+    (fields.*parts.at(static_cast<std::size_t>(string - 1)))(content);
+    return whole_glonass_string(string, content, end, leap_seconds);
 }
 
 }  // namespace skyloop::inline world

@@ -217,7 +217,9 @@ KeplerEphemeris carried_almanac(const KeplerEphemeris& record, GpsTime time) {
     // The node's longitude counts from the start of the week.
     const auto weeks = static_cast<double>(week_and_tow(record.toe).week - week_and_tow(time).week);
     const double turned = earth_rotation_rate * static_cast<double>(seconds_per_week) * weeks;
-    const double motion = std::sqrt(gravitational_constant_gps) / std::pow(record.sqrt_a, 3) + record.delta_n;
+    const double motion =
+        std::sqrt(orbit_constants(record.satellite.constellation).gravity) / std::pow(record.sqrt_a, 3) +
+        record.delta_n;
     const auto circle = [](double angle) { return std::remainder(angle, 2 * std::numbers::pi); };
     KeplerEphemeris carried = record;
     carried.toe = carried.toc = time;

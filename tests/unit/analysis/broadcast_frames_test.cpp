@@ -8,12 +8,11 @@
 #include <set>
 
 #include "../../support/oracle_table.hpp"
+#include "../../support/page_bits.hpp"
+#include "../../support/real_frames.hpp"
 #include "base/core/bytes.hpp"
-#include "base/core/files.hpp"
-#include "receiver/protocol/stream_splitter.hpp"
-#include "receiver/protocol/ubx_frame.hpp"
-#include "receiver/protocol/ubx_satellites.hpp"
-#include "world/gnss/broadcast_galileo_beidou.hpp"
+#include "world/gnss/broadcast_beidou.hpp"
+#include "world/gnss/broadcast_galileo.hpp"
 #include "world/gnss/broadcast_glonass.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 #include "world/rinex/navigation_file.hpp"
@@ -21,26 +20,9 @@
 namespace skyloop {
 namespace {
 
-// One RXM-SFRBX.
-struct RealFrame {
-    int gnss = 0, sv = 0, signal = 0;
-    std::vector<std::uint32_t> words;
-};
-
-std::vector<RealFrame> real_frames(const std::filesystem::path& path) {
-    const auto log = read_text_file(path);
-    EXPECT_TRUE(log.has_value()) << path;
-    std::vector<RealFrame> result;
-    if (!log) return result;
-    StreamSplitter splitter;
-    for (const StreamPiece& piece : splitter.feed(to_bytes(*log))) {
-        const auto frame = piece.kind == StreamKind::ubx ? parse_frame(piece.bytes) : std::nullopt;
-        const auto page =
-            frame && frame->id == RxmSfrbx::message_id ? decode_payload<RxmSfrbx>(frame->payload) : std::nullopt;
-        if (page) result.push_back({page->gnss_id, page->sv_id, page->sig_id, page->words});
-    }
-    return result;
-}
+using test::PageBits;
+using test::real_frames;
+using test::RealFrame;
 
 constexpr const char* galway_frames = "receivers/galway_20181015_m8p_static/base-20181015-1654.ubx.gz";
 constexpr const char* galway_records = "receivers/galway_20181015_m8p_static/galway.nav";
@@ -122,16 +104,6 @@ TEST(BroadcastFrames, LnavEphemeridesOfAnotherReceiver) {
 }
 
 // E1-B: words 1 to 4 whole, of 5 what a record and the header tell; the checksum of every pair of pages.
-struct PageBits {
-    std::vector<std::uint32_t> words;
-    [[nodiscard]] std::uint64_t field(std::size_t at, int width) const {
-        std::uint64_t value = 0;
-        for (std::size_t i = at; i < at + static_cast<std::size_t>(width); ++i)
-            value = value << 1 | (words[i / 32] >> (31 - i % 32) & 1);
-        return value;
-    }
-};
-
 TEST(BroadcastFrames, InavWordsAreThoseThatWereReceived) {
     SKYLOOP_REQUIRE_SHARED(besancon, besancon_frames);
     SKYLOOP_REQUIRE_SHARED(records, besancon_records);

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "world/gnss/broadcast_galileo_beidou.hpp"
+#include "world/gnss/broadcast_beidou.hpp"
+#include "world/gnss/broadcast_cnav.hpp"
+#include "world/gnss/broadcast_galileo.hpp"
 #include "world/gnss/broadcast_glonass.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 #include "world/gnss/navigation_data.hpp"
@@ -262,7 +264,15 @@ TEST(BroadcastMessages, TakeWhateverARecordHolds) {
         }
         for (int i = 1; i <= 5; ++i)
             EXPECT_EQ(glonass_string(g, i, end, LeapSeconds::announced())[0] >> 27, static_cast<std::uint32_t>(i));
-        for (int i = 0; i <= 6; ++i)
+        for (int page = 1; page <= d2_page_count; ++page)
+            EXPECT_EQ(d2_page(r, std::nullopt, page, end)[0] >> 19, 0b11100010010u);
+        for (int type : {10, 11, 30, 33})
+            EXPECT_EQ(cnav_message({r, none, LeapSeconds::announced()}, type, Signal::l5, end)[0] >> 24, 0x8Bu);
+        for (int page = 1; page <= 6; ++page)
+            EXPECT_EQ(fnav_page({r, none, LeapSeconds::announced()}, page, end)[0] >> 26,
+                      static_cast<std::uint32_t>(page));
+        EXPECT_FALSE(glonass_almanac(g, end, LeapSeconds::announced()));
+        for (int i : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 16, 17, 18, 19, 20, 63})
             EXPECT_EQ(inav_pages({r, none, LeapSeconds::announced()}, i, end)[0] >> 24, static_cast<std::uint32_t>(i));
     }
 }
@@ -276,8 +286,13 @@ TEST(BroadcastInav, WordsFollowTheSubframe) {
         e1.push_back(inav_word_ending(Signal::l1, second(2 * pair + 1)).value());
         e5b.push_back(inav_word_ending(Signal::e5b, second(2 * pair)).value());
     }
-    EXPECT_EQ(e1, (std::vector{2, 4, 6, 0, 0, 0, 0, 0, 0, 0, 1, 3, 5, 0, 0}));
-    EXPECT_EQ(e5b, (std::vector{1, 3, 5, 0, 0, 0, 0, 0, 0, 0, 2, 4, 6, 0, 0}));
+    EXPECT_EQ(e1, (std::vector{2, 4, 6, 7, 8, 17, 19, 16, 0, 0, 1, 3, 5, 0, 16}));
+    EXPECT_EQ(e5b, (std::vector{1, 3, 5, 7, 8, 0, 0, 0, 0, 0, 2, 4, 6, 0, 0}));
+    // As a receiver in Besançon heard them: in the other half of a minute the words that come by turns.
+    e1.clear();
+    for (int pair = 16; pair <= 30; ++pair)
+        e1.push_back(inav_word_ending(Signal::l1, second(2 * pair + 1)).value());
+    EXPECT_EQ(e1, (std::vector{2, 4, 6, 9, 10, 18, 20, 16, 0, 0, 1, 3, 5, 0, 16}));
     EXPECT_FALSE(inav_word_ending(Signal::l1, second(2)));
     EXPECT_FALSE(inav_word_ending(Signal::e5b, second(1)));
     EXPECT_FALSE(inav_word_ending(Signal::l1, second(1) + std::chrono::milliseconds(500)));
@@ -285,7 +300,7 @@ TEST(BroadcastInav, WordsFollowTheSubframe) {
 
 // The last word of E1-B of a week ends a second into the next.
 TEST(BroadcastInav, WordsOverTheTurnOfAWeek) {
-    EXPECT_EQ(inav_word_ending(Signal::l1, to_gps_time(2300, 1.0)), 0);
+    EXPECT_EQ(inav_word_ending(Signal::l1, to_gps_time(2300, 1.0)), 16);
     EXPECT_EQ(inav_word_ending(Signal::l1, to_gps_time(2300, 3.0)), 2);
     EXPECT_EQ(inav_word_ending(Signal::e5b, to_gps_time(2300, 2.0)), 1);
 }

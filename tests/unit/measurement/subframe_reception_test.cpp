@@ -6,6 +6,7 @@
 #include <set>
 
 #include "support/four_systems.hpp"
+#include "world/gnss/broadcast_beidou.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 
 namespace skyloop {
@@ -56,7 +57,7 @@ TEST(SubframeReception, EverySubframeOfHalfAMinuteOnce) {
     EXPECT_EQ((counts[{galileo_sent, Signal::l1}]), 15);
     EXPECT_EQ((counts[{galileo_sent, Signal::e5b}]), 15);
     EXPECT_EQ((counts[{beidou_sent, Signal::b1i}]), 3);
-    EXPECT_EQ((counts[{glonass_sent, Signal::g1}]), 5);
+    EXPECT_EQ((counts[{glonass_sent, Signal::g1}]), 15);
     for (int subframe = 1; subframe <= 5; ++subframe)
         EXPECT_EQ(gps_subframes[subframe], 1) << subframe;
 }
@@ -180,9 +181,68 @@ TEST(SubframeReception, SendsNothingOfSignalsWithOtherMessages) {
     for (int i = 0; i <= 30; ++i) {
         const GpsTime now = frame_start + std::chrono::seconds(i);
         const Observations o{
-            now, false, {locked_signal(gps_sent, Signal::l2), locked_signal({Constellation::navic, 2}, Signal::l5)}};
+            now,
+            false,
+            {locked_signal(beidou_sent, Signal::b3i), locked_signal({Constellation::navic, 2}, Signal::l5)}};
         EXPECT_TRUE(reception.receive(o, sent, now).empty());
     }
+}
+
+// L2C has a message each 12 s, L5 and E5a-I each 6 and each 10 s.
+TEST(SubframeReception, TheOtherFrequenciesHaveMessagesOfTheirOwn) {
+    const test::FourSystems sent;
+    SubframeReception reception;
+    std::map<std::pair<SatelliteId, Signal>, std::vector<int>> types;
+    for (int i = 0; i <= 60; ++i) {
+        const GpsTime now = frame_start + std::chrono::milliseconds(1000 * i + 100);
+        const Observations o{now,
+                             false,
+                             {locked_signal(gps_sent, Signal::l2), locked_signal(gps_sent, Signal::l5),
+                              locked_signal(galileo_sent, Signal::l5)}};
+        for (const Subframe& s : reception.receive(o, sent, now)) {
+            EXPECT_FALSE(s.record) << "who has these has a record by L1";
+            const bool page = s.satellite == galileo_sent;
+            types[{s.satellite, s.signal}].push_back(static_cast<int>(s.words[0] >> (page ? 26 : 12) & 0x3F));
+        }
+    }
+    // The first message was under way before the signal was.
+    EXPECT_EQ((types[{gps_sent, Signal::l2}]), (std::vector{11, 30, 33, 10}));
+    EXPECT_EQ((types[{gps_sent, Signal::l5}]), (std::vector{11, 30, 33, 10, 11, 30, 33, 10, 11}));
+    EXPECT_EQ((types[{galileo_sent, Signal::l5}]).size(), 5u);
+}
+
+// A page of subframe 1 each third second; the record is whole with the tenth.
+TEST(SubframeReception, GeostationarySatellitesSendD2) {
+    class Geostationary : public test::FourSystems {
+    public:
+        [[nodiscard]] std::optional<Ephemeris> ephemeris(SatelliteId id, GpsTime time) const override {
+            auto record = std::get<KeplerEphemeris>(*test::FourSystems::ephemeris(beidou_sent, time));
+            record.satellite = id;
+            return record;
+        }
+    } sent;
+    const SatelliteId geo{Constellation::beidou, 2};
+    SubframeReception slow, fast;
+    std::vector<std::uint32_t> pages;
+    std::vector<double> whole;
+    std::size_t of_fast = 0;
+    for (int i = 0; i <= 700; ++i) {
+        const GpsTime now = frame_start + std::chrono::milliseconds(100 * i + 50);
+        const Observations o{now, false, {locked_signal(geo, Signal::b1i)}};
+        of_fast += fast.receive(o, sent, now).size();
+        if (i % 10 != 0) continue;
+        for (const Subframe& s : slow.receive(o, sent, now)) {
+            EXPECT_EQ(bdt_week_and_tow(s.end).tow % std::chrono::seconds(3), d2_subframe_length);
+            pages.push_back(s.words[1] >> 14 & 0xF);
+            if (s.record) whole.push_back(difference(s.end, frame_start).value());
+        }
+    }
+    ASSERT_EQ(pages.size(), 23u);
+    EXPECT_EQ(of_fast, pages.size());
+    for (std::size_t i = 1; i < pages.size(); ++i)
+        EXPECT_EQ(pages[i], pages[i - 1] % 10 + 1);
+    // BeiDou's half minutes begin 14 s later; the page that is the tenth ends 27.6 s after that.
+    EXPECT_EQ(whole, std::vector<double>{41.6});
 }
 
 }  // namespace

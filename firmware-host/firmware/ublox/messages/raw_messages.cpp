@@ -173,11 +173,19 @@ std::uint8_t tracking_channel(SatelliteId id, const Fix& fix) {
                                          : nearest<std::uint8_t>(static_cast<double>(found - fix.satellites.begin()));
 }
 
-// Pilots carry no data: I/NAV comes by E1-B and E5b-I, where what is measured is called E1-C and E5b-Q.
+// Pilots carry no data: what is measured is called E1-C, E5b-Q, E5a-Q, L2CL and L5Q, and the messages come by E1-B,
+// E5b-I, E5a-I, L2CM and L5I.
 std::uint8_t data_signal_id(const Subframe& subframe, const ReportContext& context) {
-    constexpr std::uint8_t e1_b = 1, e5b_i = 5;
-    if (subframe.satellite.constellation == Constellation::galileo)
+    constexpr std::uint8_t e1_b = 1, e5a_i = 3, e5b_i = 5, l2_cm = 4, l5_i = 6, qzss_l5_i = 8;
+    const bool gps = subframe.satellite.constellation == Constellation::gps;
+    if (subframe.satellite.constellation == Constellation::galileo) {
+        if (subframe.signal == Signal::l5) return e5a_i;
         return subframe.signal == Signal::e5b ? e5b_i : e1_b;
+    }
+    if (gps || subframe.satellite.constellation == Constellation::qzss) {
+        if (subframe.signal == Signal::l2) return l2_cm;
+        if (subframe.signal == Signal::l5) return gps ? l5_i : qzss_l5_i;
+    }
     return signal_id(subframe.satellite, subframe.signal, context.config.settings.beidou_b1c);
 }
 
@@ -196,7 +204,8 @@ std::vector<Bytes> received_subframes(const ReportContext& context) {
         m.version = 2;
         m.words = subframe.words;
         // What a ninth word holds in captures is of the satellite's channel, not of its message.
-        if (subframe.satellite.constellation == Constellation::galileo) m.words.resize(context.board.galileo_words);
+        if (subframe.satellite.constellation == Constellation::galileo && subframe.signal != Signal::l5)
+            m.words.resize(context.board.galileo_words);
         frames.push_back(encode_frame(m));
     }
     return frames;

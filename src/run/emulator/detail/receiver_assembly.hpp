@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "run/emulator/assembly.hpp"
+#include "run/emulator/osnma_files.hpp"
 #include "run/emulator/wires.hpp"
 
 namespace skyloop::inline run {
@@ -20,6 +21,7 @@ struct SharedParts {
     GpsTime start;
     std::shared_ptr<const UrbanScene> scene;  // null: nothing stands around
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
+    std::shared_ptr<const OsnmaKeys> osnma = osnma_keys_of(scenario, start);  // null: there is none
 };
 
 /// One receiver before anything is opened or emptied for it.

@@ -34,16 +34,17 @@ constexpr std::array<FaultKind, n> without_strength(std::array<FaultKind, n> kin
     return kinds;
 }
 
-extern const FaultKind jamming_fault;            ///< by J/S, or by where the jammer stands and how strong it is
-extern const FaultKind multipath_burst_fault;    ///< echoes that come and go
-extern const FaultKind surroundings_fault;       ///< what stands around the antenna
-std::vector<FaultKind> reception_fault_kinds();  ///< outage, antenna, interference
-std::vector<FaultKind> spoofing_fault_kinds();   ///< false signals
-std::vector<FaultKind> satellite_fault_kinds();  ///< clocks, records, the air
-std::vector<FaultKind> range_fault_kinds();      ///< measurements that are wrong in the receiver
-std::vector<FaultKind> position_fault_kinds();   ///< of the solution
-std::vector<FaultKind> report_fault_kinds();     ///< of what is reported while the receiver itself knows better
-std::vector<FaultKind> time_fault_kinds();       ///< of the solution
+extern const FaultKind jamming_fault;                 ///< by J/S, or by where the jammer stands and how strong it is
+extern const FaultKind multipath_burst_fault;         ///< echoes that come and go
+extern const FaultKind surroundings_fault;            ///< what stands around the antenna
+std::vector<FaultKind> reception_fault_kinds();       ///< outage, antenna, interference
+std::vector<FaultKind> spoofing_fault_kinds();        ///< false signals
+std::vector<FaultKind> satellite_fault_kinds();       ///< clocks, records, the air
+std::vector<FaultKind> range_fault_kinds();           ///< measurements that are wrong in the receiver
+std::vector<FaultKind> authentication_fault_kinds();  ///< Galileo's OSNMA
+std::vector<FaultKind> position_fault_kinds();        ///< of the solution
+std::vector<FaultKind> report_fault_kinds();          ///< of what is reported while the receiver itself knows better
+std::vector<FaultKind> time_fault_kinds();            ///< of the solution
 std::vector<FaultKind> receiver_fault_kinds();
 std::vector<FaultKind> wire_fault_kinds();
 std::vector<FaultKind> correction_fault_kinds();
