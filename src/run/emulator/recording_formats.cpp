@@ -129,6 +129,12 @@ void append_errors(CsvRows& rows, const Arrival& arrival, const SignalTerms* ter
     rows.number(arrival.amplitude_scintillation, 4).number(arrival.phase_scintillation.rad(), 4);
 }
 
+void append_fine_causes(CsvRows& rows, const Arrival& arrival) {
+    const SignalArrival first = arrival.signals.empty() ? SignalArrival{} : arrival.signals.front();
+    rows.number(first.satellite_antenna.value(), 4).number(first.receiver_antenna.value(), 4);
+    rows.number(arrival.solid_tide.value(), 4).number(arrival.wind_up, 4);
+}
+
 }  // namespace
 
 std::string fix_row(const Trace& trace) {
@@ -148,7 +154,7 @@ std::string fix_row(const Trace& trace) {
     return row.take();
 }
 
-std::string satellite_rows(const Trace& trace) {
+std::string satellite_rows(const Trace& trace, bool precise) {
     const std::string time = utc_text(trace.truth.time);
     constexpr std::size_t usual_length = 250;  // of a row
     CsvRows rows(usual_length * trace.sky.satellites.size());
@@ -166,7 +172,9 @@ std::string satellite_rows(const Trace& trace) {
         rows.number((arrival.false_range + (terms ? terms->false_code : Metres(0))).value(), 4);
         rows.text(reception_names.at(static_cast<std::size_t>(reception_of(arrival))));
         rows.number(arrival.direct_loss.value(), 2);
-        rows.number((arrival.shadowing_loss - arrival.direct_loss).value(), 2).end_row();
+        rows.number((arrival.shadowing_loss - arrival.direct_loss).value(), 2);
+        if (precise) append_fine_causes(rows, arrival);
+        rows.end_row();
     }
     return rows.take();
 }

@@ -82,8 +82,17 @@ struct RunSettings {
     [[nodiscard]] std::uint64_t seed_of_receivers() const { return receiver_seed.value_or(seed); }
 };
 
+/// Products that were computed afterwards.
+struct PreciseFiles {
+    std::vector<std::filesystem::path> orbits;  ///< SP3; empty: records are the truth
+    std::vector<std::filesystem::path> clocks;  ///< RINEX clock files; empty: those of the orbits
+    std::vector<std::filesystem::path> biases;  ///< SINEX BIAS; empty: codes are late as it is broadcast
+    std::filesystem::path antennas;             ///< ANTEX; empty: signals leave from the centre of mass
+};
+
 struct SkySettings {
     std::vector<std::filesystem::path> navigation;  ///< empty: the nominal sky
+    PreciseFiles precise;                           ///< the truth behind what satellites send
     bool rebase_navigation = false;                 ///< move the data to the start time, keeping its time of day
     std::vector<Constellation> constellations;      ///< empty: all of the data; for sensor models gps and qzss
     std::optional<Angle> elevation_mask;            ///< nothing: the board's; of sensor models 5°
@@ -215,6 +224,7 @@ struct ReceiverEntry {
     bool power_up = false;  ///< it is switched on at the start of the run: banner, then `start`
     std::map<std::uint32_t, std::uint64_t> config{};  ///< raw values by the ids of items that its user has saved in it
     std::filesystem::path state_file;                 ///< keeps battery-backed memory and flash; empty: nothing does
+    std::string antenna_type;  ///< and radome, as catalogues name them; empty: measured at its phase centre
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
     std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
     std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna
