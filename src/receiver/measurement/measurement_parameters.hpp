@@ -1,11 +1,13 @@
 /// Every number of the measurement engine.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "base/core/random.hpp"
 #include "receiver/measurement/receiver_clock.hpp"
 #include "receiver/measurement/tracking_jitter.hpp"
+#include "world/gnss/satellite.hpp"
 
 namespace skyloop::inline receiver {
 
@@ -43,6 +45,15 @@ struct StatisticalMultipath {
     double phase_ratio = 0.003;
 };
 
+/// What the receiver's own filters delay, constant, of both signals of a satellite alike.
+struct ReceiverBiases {
+    std::array<Metres, constellation_names.size()> systems{};  ///< of the code, by Constellation, against GPS
+    /// For each number of the channel of GLONASS, of the code and of the carrier's phase. Receivers have up to metres
+    /// of the one and centimetres of the other (L. Wanninger (2012), Carrier-phase inter-frequency biases of GLONASS
+    /// receivers, Journal of Geodesy 86, 139-148).
+    Metres glonass_channel_code{0}, glonass_channel_phase{0};
+};
+
 /// A receiver's front end, loops and oscillator.
 struct MeasurementParameters {
     CodeLoop code_loop;            ///< for signals of 1.023 Mchip/s; the chip rate of others follows in proportion
@@ -64,8 +75,10 @@ struct MeasurementParameters {
     Decibels cn0_resolution{1};       ///< of the reported C/N0; 0: none
     Seconds scintillation_time{0.8};  ///< correlation time of scintillating phase (MODELS.md 7.11)
     double slips_per_hour = 0;        ///< of each tracked carrier in good conditions; more come with weak signals
+    ReceiverBiases biases{};
 
     ErrorTerm code_noise, phase_noise, doppler_noise, multipath, receiver_clock, cycle_slips;
+    ErrorTerm receiver_biases;
     ErrorTerm scintillation;  ///< its dice alone: how strong it is, what arrives says
 };
 

@@ -59,6 +59,23 @@ DbHz reported_cn0(DbHz cn0, Decibels resolution) {
     return DbHz(std::round(value / resolution.value()) * resolution.value());
 }
 
+int glonass_channel_of(const SignalArrival& signal) {
+    const bool first = signal.signal == Signal::g1;
+    const double base = first ? 1602e6 : 1246e6, step = first ? 562.5e3 : 437.5e3;
+    return static_cast<int>(std::lround((signal.carrier.value() - base) / step));
+}
+
+struct ChannelBias {
+    Metres code, phase;
+};
+ChannelBias receiver_bias(const MeasurementParameters& p, SatelliteId satellite, const SignalArrival& signal) {
+    const double factor = p.receiver_biases.factor();
+    ChannelBias bias{factor * p.biases.systems.at(static_cast<std::size_t>(satellite.constellation)), Metres(0)};
+    if (satellite.constellation != Constellation::glonass) return bias;
+    const double channel = factor * glonass_channel_of(signal);
+    return {bias.code + channel * p.biases.glonass_channel_code, channel * p.biases.glonass_channel_phase};
+}
+
 double multipath_deviation(const StatisticalMultipath& model, Angle elevation) {
     return model.floor.value() + model.at_horizon.value() * low_share(elevation);
 }
@@ -221,7 +238,8 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     const double iono = arrival.iono_delay.value() * ratio * ratio;
     const double path = arrival.range.value() + epoch.clock_bias.value() - speed_of_light * arrival.clock_bias.value() +
                         arrival.signal_in_space_error.value() + arrival.tropo_delay.value() +
-                        arrival.excess_path.value() + arrival.false_range.value();
+                        arrival.excess_path.value() + arrival.false_range.value() + arrival.solid_tide.value() +
+                        input.signal.satellite_antenna.value() + input.signal.receiver_antenna.value();
     const double path_rate = arrival.range_rate.value() + arrival.range_rate_error.value() +
                              arrival.excess_rate.value() + arrival.false_range_rate.value() -
                              arrival.false_iono_rate.value() * ratio * ratio + epoch.clock_drift.value() -
@@ -232,8 +250,9 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.carrier = input.signal.carrier;
     result.cn0 = reported_cn0(*arriving_cn0(input, echoes_.strength + faded_ + parameters.cn0_offset),
                               parameters.cn0_resolution);
+    const ChannelBias bias = receiver_bias(parameters, satellite_, input.signal);
     result.pseudorange = Metres(path + speed_of_light * input.signal.group_delay.value() + iono +
-                                terms_.multipath.value() + terms_.code_noise.value());
+                                terms_.multipath.value() + terms_.code_noise.value() + bias.code.value());
     result.pseudorange_deviation = known_deviation(parameters, deviations_.code, result.cn0);
     result.doppler = Hertz(-path_rate / wavelength + terms_.doppler_noise.value());
     result.doppler_deviation = deviations_.frequency;
@@ -242,8 +261,9 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     if (arrival.echoes_known) result.correlation_distortion = std::abs(echoes_.distortion);
     result.augmentation = augmentation_of(arrival, Metres(iono));
     if (!lock_.phase_locked()) return result;
-    const double carrier_path = path - iono + terms_.phase_multipath.value() + terms_.phase_noise.value();
-    result.carrier_phase = carrier_path / wavelength + count_.cycles();
+    const double carrier_path =
+        path - iono + bias.phase.value() + terms_.phase_multipath.value() + terms_.phase_noise.value();
+    result.carrier_phase = carrier_path / wavelength + arrival.wind_up + count_.cycles();
     // What the loop itself sees: multipath does not shake it.
     result.carrier_phase_deviation = deviations_.total_phase().rad() / (2 * std::numbers::pi);
     result.slipped = slipped_;

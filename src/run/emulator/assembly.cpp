@@ -232,6 +232,14 @@ Result<std::vector<Station>> make_stations(const SharedParts& shared, Assembly& 
     return stations;
 }
 
+// What satellites send, and where they are.
+Result<LoadedNavigation> load_sky(const Scenario& scenario, GpsTime now, const DataFolders& data) {
+    auto loaded = load_navigation(scenario, now, data);
+    if (!loaded) return loaded;
+    if (const auto added = load_precise_truth(scenario, *loaded); !added) return fail(added.error());
+    return loaded;
+}
+
 Result<void> judge_timeline(const Scenario& scenario, Assembly& assembly) {
     if (const auto checked = check_timeline(scenario, assembly.start); !checked) return fail(checked.error());
     if (!assembly.end) return {};
@@ -309,7 +317,10 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
     auto effects =
         scenario.model.sensor_model
             ? sensor_effects_of(scenario, setup)
-            : modern_effects_of(scenario, *setup.navigation, {setup.geoid, setup.start, setup.data, setup.gas_losses});
+            : modern_effects_of(
+                  scenario, *setup.navigation,
+                  {setup.geoid, setup.start, setup.data, setup.gas_losses, setup.precise,
+                   setup.receiver < scenario.receivers.size() ? &scenario.receivers[setup.receiver] : nullptr});
     if (!effects) return fail(effects.error());
     auto path = make_antenna_path(scenario, setup);
     const auto last_place = place_before_start(scenario, setup.receiver, path->at(setup.start));
@@ -317,8 +328,8 @@ Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSet
                                                      : FixMaker(measuring_receiver(scenario, setup, last_place));
     const RayTracedScene* city = add_city(*effects, scenario, setup);
     add_obstacles(*effects, setup);
-    return Simulation(
-        {std::move(path), setup.navigation, std::move(*effects), std::move(fix_maker), city, setup.osnma});
+    return Simulation({std::move(path), setup.navigation, std::move(*effects), std::move(fix_maker), city, setup.osnma,
+                       setup.precise});
 }
 
 std::vector<std::filesystem::path> board_folders(const DataFolders& data) {
@@ -343,7 +354,7 @@ void take_navigation(const LoadedNavigation& loaded, Scenario& scenario, Assembl
 Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const RunMode& mode) {
     Scenario scenario = asked;
     Assembly assembly;
-    auto navigation = load_navigation(scenario, mode.now, data);
+    auto navigation = load_sky(scenario, mode.now, data);
     if (!navigation) return fail(navigation.error());
     assembly.geoid = find_geoid(data, navigation->warnings);
     assembly.warnings = scenario_warnings(scenario, assembly.geoid.get());
@@ -366,7 +377,7 @@ Result<Assembly> assemble(const Scenario& asked, const DataFolders& data, const 
         assembly.details.push_back(std::move(detail));
 
     auto stations = make_stations({scenario, data, mode, std::move(navigation->source), assembly.geoid.get(),
-                                   assembly.start, assembly.scene.scene},
+                                   assembly.start, assembly.scene.scene, navigation->precise},
                                   assembly);
     if (!stations) return fail(stations.error());
     if (auto warning = warning_of_last_map(scenario)) assembly.warnings.push_back(std::move(*warning));

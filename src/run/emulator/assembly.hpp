@@ -21,6 +21,7 @@
 #include "run/output/run_output.hpp"
 #include "run/scenario/scenario.hpp"
 #include "wire/ntrip/ntrip_caster.hpp"
+#include "world/gnss/precise_truth.hpp"
 #include "world/propagation/atmosphere_losses.hpp"
 
 namespace skyloop::inline run {
@@ -104,10 +105,17 @@ struct LoadedNavigation {
     std::unique_ptr<NavigationSource> source{};
     GpsTime start{};  ///< of the run
     std::vector<std::string> warnings{};
-    std::vector<std::string> notes{};            ///< what was chosen among others
-    std::vector<std::filesystem::path> files{};  ///< that were read
+    std::vector<std::string> notes{};               ///< what was chosen among others
+    std::vector<std::filesystem::path> files{};     ///< that were read
+    std::shared_ptr<const PreciseTruth> precise{};  ///< by load_precise_truth(); null: records are the truth
 };
 Result<LoadedNavigation> load_navigation(const Scenario& scenario, GpsTime now, const DataFolders& folders = {});
+
+/// Adds the precise products of a scenario, where it names some, as the truth behind its navigation data. A run without
+/// a start of its own then begins where they do, at the earliest; of satellites that they do not know it warns. Fails
+/// with `input` for files that cannot be read, with `usage` where the run is outside of their time, and where it has no
+/// records of that day that could be wrong.
+Result<void> load_precise_truth(const Scenario& scenario, LoadedNavigation& loaded);
 
 /// The trajectory of a scenario, begun at `start`. That of a file must have been loaded by load_track().
 std::unique_ptr<Trajectory> make_trajectory(const TrajectorySettings& settings, GpsTime start);
@@ -139,7 +147,8 @@ struct SimulationSetup {
     double geoid_step_deg = 0;                           ///< the same
     /// Of the modern model; receivers of one run share it.
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
-    std::shared_ptr<const OsnmaKeys> osnma{};  ///< null: Galileo's pages are not authenticated
+    std::shared_ptr<const OsnmaKeys> osnma{};       ///< null: Galileo's pages are not authenticated
+    std::shared_ptr<const PreciseTruth> precise{};  ///< that the receivers of a run share; null: records are the truth
 };
 /// The world of a scenario and its way to a fix. Receivers of one run share the world and its errors; what their own
 /// electronics add differs. Fails with `input` when scenario and world do not fit each other.

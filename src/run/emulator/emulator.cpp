@@ -38,7 +38,9 @@ Result<void> Emulator::begin_recordings() {
     const bool former = holds_recording(recorder()->folder());
     for (Station& station : parts_.stations)
         if (Recorder* own = station.recorder())
-            if (const auto begun = own->begin({std::max<std::size_t>(station.wires().size(), 1), former}); !begun)
+            if (const auto begun = own->begin({std::max<std::size_t>(station.wires().size(), 1), former,
+                                               station.simulation().precise() != nullptr});
+                !begun)
                 return begun;
     if (former) remove_recordings_from(recorder()->folder(), parts_.stations.size());
     return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/core/words.hpp"
 #include "base/time/utc_time.hpp"
 #include "detail/modern_assembly.hpp"
 #include "detail/receiver_assembly.hpp"
@@ -56,6 +57,28 @@ std::filesystem::path nequick_folder(const DataFolders& data) {
 // ephemeris takes the rest.
 constexpr Seconds warm_search{3};
 
+// Of the receiver's antenna, from the catalogue of the run.
+Result<std::optional<AntennaCalibration>> calibration_of(const WorldData& world) {
+    if (world.receiver == nullptr || world.receiver->antenna_type.empty()) return std::nullopt;
+    const std::string name = receiver_antenna_name(world.receiver->antenna_type);
+    const auto place = world.receiver->told_at.find("antenna_type");
+    const std::string at = place == world.receiver->told_at.end() ? "receiver.antenna_type: " : place->second;
+    const AntennaCatalogue* const catalogue = world.precise ? world.precise->antennas().get() : nullptr;
+    if (catalogue == nullptr)
+        return fail(
+            ErrorCode::usage,
+            fmt::format("{}'{}' needs its calibration; expected an ANTEX file in sky.antennas, beside sky.orbits", at,
+                        name));
+    const auto found = catalogue->receivers.find(name);
+    if (found != catalogue->receivers.end()) return found->second;
+    std::vector<std::string_view> known;
+    for (const auto& [other, calibration] : catalogue->receivers)
+        known.push_back(other);
+    return fail(ErrorCode::usage,
+                fmt::format("{}'{}' is not in sky.antennas; expected an antenna and a radome that are{}", at, name,
+                            did_you_mean(name, known)));
+}
+
 }  // namespace
 
 Result<ModernWorld> modern_world_of(const Scenario& scenario, const NavigationSource& navigation,
@@ -80,6 +103,10 @@ Result<ModernWorld> modern_world_of(const Scenario& scenario, const NavigationSo
     context.maps = std::move(*maps);
     context.nequick_folder = nequick_folder(world.data);
     context.geoid = world.geoid;
+    auto antenna = calibration_of(world);
+    if (!antenna) return fail(antenna.error());
+    context.receiver_antenna = std::move(*antenna);
+    context.precise = world.precise;
     context.seed = scenario.run.seed_of_sky();
     context.gas_losses = world.gas_losses;
     return ModernWorld{std::move(settings.propagation), std::move(context)};

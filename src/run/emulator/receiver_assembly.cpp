@@ -214,7 +214,8 @@ SimulationSetup simulation_setup(const SharedParts& shared, std::size_t index, c
             receiver.board().modern,
             receiver.board().geoid_step_deg,
             shared.gas_losses,
-            shared.osnma};
+            shared.osnma,
+            shared.precise};
 }
 
 void remember_place(const SharedParts& shared, std::size_t index, const Simulation& simulation,

@@ -103,8 +103,11 @@ void add_track_file(const TrajectorySettings& way, std::vector<InputFile>& files
 }
 
 void add_world_files(const Scenario& scenario, std::vector<InputFile>& files) {
-    for (const auto& file : scenario.sky.navigation)
-        files.push_back({file});
+    const PreciseFiles& precise = scenario.sky.precise;
+    for (const auto* paths : {&scenario.sky.navigation, &precise.orbits, &precise.clocks, &precise.biases})
+        for (const auto& file : *paths)
+            files.push_back({file});
+    if (!precise.antennas.empty()) files.push_back({precise.antennas});
     if (const auto& maps = scenario.model.modern.ionosphere_maps; !maps.empty()) files.push_back({maps});
     if (!scenario.tec_maps.empty()) files.push_back({scenario.tec_maps});
     for (const auto& table : scenario.model.modern.tables)

@@ -37,7 +37,7 @@ Result<void> Recorder::begin(const Beginning& beginning) {
     for (const char* name : {"junit.xml", "verdicts.json", "commands.jsonl", "observations.rnx", "navigation.rnx",
                              "osnma_keys.xml", "osnma_public_key_1.pem", "osnma_public_key_2.pem"})
         if (beginning.former) std::filesystem::remove(folder() / name, reason);
-    if (const auto tables = create_tables(); !tables) return tables;
+    if (const auto tables = create_tables(beginning.precise); !tables) return tables;
     if (const auto ports = create_ports(beginning.wires); !ports) return ports;
     if (beginning.former) remove_ports_from(beginning.wires);
     for (const auto& [name, text] : files_)
@@ -49,11 +49,13 @@ Result<void> Recorder::begin(const Beginning& beginning) {
     return {};
 }
 
-Result<void> Recorder::create_tables() {
+Result<void> Recorder::create_tables(bool precise) {
     const auto created = create_files(folder(), {{&fixes_, "fixes.csv"}, {&satellites_, "satellites.csv"}});
     if (!created) return created;
     fixes_.write(fixes_header);
-    satellites_.write(satellites_header);
+    precise_ = precise;
+    satellites_.write(precise ? satellites_header.substr(0, satellites_header.size() - 1) : satellites_header);
+    if (precise) satellites_.write(precise_satellites_header);
     return {};
 }
 
@@ -83,7 +85,7 @@ void Recorder::remove_ports_from(std::size_t wire) {
 
 void Recorder::record(const Trace& trace, const NavigationSource& broadcast) {
     fixes_.write(fix_row(trace));
-    satellites_.write(satellite_rows(trace));
+    satellites_.write(satellite_rows(trace, precise_));
     if (rinex_) rinex_->record(trace, broadcast);
 }
 

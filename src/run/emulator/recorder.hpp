@@ -36,6 +36,7 @@ public:
     struct Beginning {
         std::size_t wires = 1;  ///< how many sets of port files there are to be: port0, port1, …
         bool former = false;    ///< a run has been recorded there: what is not replaced of it goes, too
+        bool precise = false;   ///< satellites.csv tells what only counts beside precise products
     };
     Result<void> begin(const Beginning& beginning);
 
@@ -62,13 +63,14 @@ private:
         void write_heard();
     };
     Recorder();
-    Result<void> create_tables();
+    Result<void> create_tables(bool precise);
     static std::string port_file(std::size_t wire, std::string_view extension);
     Result<void> create_ports(std::size_t wires);
     void remove_ports_from(std::size_t wire);  // of a former run with more wires
 
     ClaimedFolder folder_;
     OutputFile fixes_, satellites_;
+    bool precise_ = false;
     std::vector<PortFiles> ports_;
     std::map<std::string, std::string> files_;
     std::unique_ptr<RinexRecordingSetup> rinex_setup_;  // null: it measures nothing

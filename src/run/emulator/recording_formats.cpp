@@ -144,6 +144,12 @@ void append_link_budget(CsvRows& rows, const Arrival& arrival) {
     arrives ? rows.number(arrival.received_power->value(), 5) : rows.nothing();
 }
 
+void append_fine_causes(CsvRows& rows, const Arrival& arrival) {
+    const SignalArrival first = arrival.signals.empty() ? SignalArrival{} : arrival.signals.front();
+    rows.number(first.satellite_antenna.value(), 4).number(first.receiver_antenna.value(), 4);
+    rows.number(arrival.solid_tide.value(), 4).number(arrival.wind_up, 4);
+}
+
 }  // namespace
 
 std::string fix_row(const Trace& trace) {
@@ -165,7 +171,7 @@ std::string fix_row(const Trace& trace) {
     return row.take();
 }
 
-std::string satellite_rows(const Trace& trace) {
+std::string satellite_rows(const Trace& trace, bool precise) {
     const std::string time = utc_text(trace.truth.time);
     constexpr std::size_t usual_length = 300;  // of a row
     CsvRows rows(usual_length * trace.sky.satellites.size());
@@ -185,6 +191,7 @@ std::string satellite_rows(const Trace& trace) {
         rows.number(arrival.direct_loss.value(), 2);
         rows.number((arrival.shadowing_loss - arrival.direct_loss).value(), 2);
         append_link_budget(rows, arrival);
+        if (precise) append_fine_causes(rows, arrival);
         rows.end_row();
     }
     return rows.take();

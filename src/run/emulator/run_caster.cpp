@@ -214,8 +214,8 @@ std::string RunCaster::warning() const {
 namespace {
 
 Result<VirtualSky> virtual_sky(const Scenario& scenario, const Assembly& assembly, const CasterHost& host) {
-    return VirtualSky::of(
-        scenario, {assembly.emulator->simulation().navigation(), assembly.geoid.get(), assembly.start, host.data});
+    return VirtualSky::of(scenario, {assembly.emulator->simulation().navigation(), assembly.geoid.get(), assembly.start,
+                                     host.data, assembly.emulator->simulation().precise()});
 }
 
 // The first of the mount points with virtual stations; null: there is none.

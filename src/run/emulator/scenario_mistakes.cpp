@@ -89,6 +89,7 @@ Error with_other_mistakes(const Error& first, const Scenario& asked, const DataF
     const auto geoid = find_geoid(data, unsaid);
     auto navigation = load_navigation(scenario, now, data);
     found.add(navigation, place_of(scenario, "sky.navigation"));
+    if (navigation) found.add(load_precise_truth(scenario, *navigation));
     const GpsTime start = navigation ? navigation->start : scenario.run.start.value_or(now);
     const auto* file = std::get_if<FileSettings>(&scenario.trajectory);
     const std::string path_told_at = file != nullptr ? file->path_told_at : std::string();

@@ -43,11 +43,13 @@ FrontEnd front_end(const Arrivals& arrivals) {
 
 }  // namespace
 
-Simulation::Simulation(Parts parts) : parts_(std::move(parts)) {
+Simulation::Simulation(Parts parts) : parts_(std::move(parts)), observer_(parts_.precise.get()) {
     if (parts_.osnma) subframes_.authenticate(parts_.osnma);
 }
 
-SkyView Simulation::view(const TruthState& truth) const { return observe_sky(truth, *parts_.navigation); }
+SkyView Simulation::view(const TruthState& truth) const {
+    return observe_sky(truth, *parts_.navigation, parts_.precise.get());
+}
 
 Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaults* faults) {
     Trace trace;

@@ -38,8 +38,9 @@ public:
         std::shared_ptr<const NavigationSource> navigation;       ///< that the antennas of a run share
         std::vector<std::unique_ptr<PropagationEffect>> effects;  ///< in the order in which they are applied
         FixMaker fix_maker;
-        const RayTracedScene* city = nullptr;      ///< one of the effects; null: nothing stands around
-        std::shared_ptr<const OsnmaKeys> osnma{};  ///< of Galileo's pages; null: they are not authenticated
+        const RayTracedScene* city = nullptr;           ///< one of the effects; null: nothing stands around
+        std::shared_ptr<const OsnmaKeys> osnma{};       ///< of Galileo's pages; null: they are not authenticated
+        std::shared_ptr<const PreciseTruth> precise{};  ///< where the satellites are; null: where their records say
     };
     explicit Simulation(Parts parts);
 
@@ -53,6 +54,7 @@ public:
     /// What stands above an antenna, and nothing of what reaches it.
     [[nodiscard]] SkyView view(const TruthState& truth) const;
     [[nodiscard]] const NavigationSource& navigation() const { return *parts_.navigation; }
+    [[nodiscard]] const std::shared_ptr<const PreciseTruth>& precise() const { return parts_.precise; }
     /// Where the antenna is.
     [[nodiscard]] TruthState truth_at(GpsTime time) const { return parts_.trajectory->at(time); }
     /// The antenna's path from now on. Whoever moves it says so to the device under test, or finds out what it does.

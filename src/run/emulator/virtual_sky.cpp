@@ -56,16 +56,18 @@ Geodetic station_place(const Geodetic& client) {
 
 class VirtualAntenna::Parts {
 public:
-    Parts(const NavigationSource& source, const Geodetic& place, MeasurementEngine engine)
-        : navigation(source), measurement(std::move(engine)) {
+    Parts(const NavigationSource& source, std::shared_ptr<const PreciseTruth> products, const Geodetic& place,
+          MeasurementEngine engine)
+        : navigation(source), precise(std::move(products)), measurement(std::move(engine)) {
         truth.geodetic = place;
         truth.position = to_ecef(place);
     }
 
     const NavigationSource& navigation;
+    std::shared_ptr<const PreciseTruth> precise;
     TruthState truth;
     ReceiverSettings settings;
-    SkyObserver observer;
+    SkyObserver observer{precise.get()};
     std::vector<std::unique_ptr<PropagationEffect>> effects;
     MeasurementEngine measurement;
 };
@@ -87,6 +89,7 @@ Observations VirtualAntenna::observe(GpsTime time) {
 
 struct VirtualSky::Ground {
     const NavigationSource& navigation;
+    std::shared_ptr<const PreciseTruth> precise;
     ModernWorld world;
     MeasurementParameters measurement;
     std::set<SystemSignal> signals;
@@ -131,15 +134,16 @@ Result<VirtualSky> VirtualSky::of(const Scenario& scenario, const World& world) 
                     "virtual stations measure, and a sensor model does not; expected model.name = \"modern\"");
     auto modern = modern_world_of(
         scenario, world.navigation,
-        {world.geoid, world.start, world.data, std::make_shared<GasLossTable>()});  // which the receivers do not share
+        {world.geoid, world.start, world.data, std::make_shared<GasLossTable>(),  // which the receivers do not share
+         world.precise});
     if (!modern) return fail(modern.error());
     ModernSettings survey = ModernSettings::of(ModernPreset::survey);
     survey.errors = scenario.model.modern.errors;
     survey.propagation.scintillation = modern->parameters.scintillation;
     survey = effective(std::move(survey));
     stand_in_the_open(modern->parameters, survey.propagation.link);
-    VirtualSky sky(std::make_shared<Ground>(
-        Ground{world.navigation, std::move(*modern), network_receiver(survey), signals_of(world.navigation)}));
+    VirtualSky sky(std::make_shared<Ground>(Ground{world.navigation, world.precise, std::move(*modern),
+                                                   network_receiver(survey), signals_of(world.navigation)}));
     // What would be refused at the first client is refused now.
     if (const auto tried = sky.antenna(Geodetic::degrees(0, 0, 0), 0); !tried) return fail(tried.error());
     return sky;
@@ -148,7 +152,7 @@ Result<VirtualSky> VirtualSky::of(const Scenario& scenario, const World& world) 
 Result<std::unique_ptr<VirtualAntenna>> VirtualSky::antenna(const Geodetic& place, std::uint64_t seed) const {
     auto effects = modern_effects(ground_->world.parameters, ground_->world.context);
     if (!effects) return fail(effects.error());
-    auto parts = std::make_unique<VirtualAntenna::Parts>(ground_->navigation, place,
+    auto parts = std::make_unique<VirtualAntenna::Parts>(ground_->navigation, ground_->precise, place,
                                                          MeasurementEngine(ground_->measurement, seed));
     parts->effects = std::move(*effects);
     parts->settings.signals = ground_->signals;

@@ -16,6 +16,7 @@
 #include "world/flow/observations.hpp"
 #include "world/flow/receiver_settings.hpp"
 #include "world/gnss/ephemeris.hpp"
+#include "world/gnss/precise_truth.hpp"
 
 namespace skyloop::inline run {
 
@@ -70,6 +71,7 @@ public:
         const Geoid* geoid = nullptr;  ///< null: heights above the sea are those above the ellipsoid
         GpsTime start;                 ///< of the run
         DataFolders data;
+        std::shared_ptr<const PreciseTruth> precise{};  ///< null: records are the truth
     };
     /// Fails with `usage` for a sensor model, with which nothing is measured; with `input` where a file that the air is
     /// made from is missing or does not fit the run.

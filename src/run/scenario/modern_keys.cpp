@@ -201,6 +201,26 @@ void read_solution(TableReader& table, ModernSettings& settings) {
                p.differential.kind, "corrections from outside, as a regime of the errors");
 }
 
+void read_biases(TableReader& table, ReceiverBiases& biases) {
+    struct System {
+        const char* key;
+        Constellation constellation;
+        const char* meaning;
+    };
+    constexpr NumberRange range{-1e4, 1e4};
+    for (const System& s : {System{"galileo_m", Constellation::galileo, "of the codes of Galileo against GPS"},
+                            System{"beidou_m", Constellation::beidou, "of those of BeiDou"},
+                            System{"qzss_m", Constellation::qzss, "of those of QZSS"},
+                            System{"glonass_m", Constellation::glonass, "of those of GLONASS, channel 0"},
+                            System{"sbas_m", Constellation::sbas, "of those of SBAS"},
+                            System{"navic_m", Constellation::navic, "of those of NavIC"}})
+        table.quantity(s.key, biases.systems.at(static_cast<std::size_t>(s.constellation)), range, s.meaning);
+    table.quantity("glonass_channel_code_m", biases.glonass_channel_code, {-100, 100},
+                   "of the codes of GLONASS, for each number of the channel");
+    table.quantity("glonass_channel_phase_m", biases.glonass_channel_phase, {-1, 1},
+                   "of its carriers' phases, the same");
+}
+
 void read_car(TableReader& modern, ModernSettings& settings) {
     ChannelParameters& channel = settings.propagation.channel_model;
     modern.where(channel.acts(), "with surroundings other than open-sky",
@@ -225,6 +245,8 @@ void forget_acting_residual(ModernSettings& settings) {
 void read_modern_receiver_keys(TableReader& modern, ModernSettings& settings) {
     modern.table("clock", "the receiver's oscillator", [&](TableReader& t) { read_clock(t, settings); });
     modern.table("tracking", "the receiver's loops", [&](TableReader& t) { read_tracking(t, settings.measurement); });
+    modern.table("biases", "constant delays of the receiver's filters",
+                 [&](TableReader& t) { read_biases(t, settings.measurement.biases); });
     modern.table("acquisition", "search, lock and loss",
                  [&](TableReader& t) { read_acquisition(t, settings.measurement.acquisition); });
     modern.table("solution", "what the receiver makes of its measurements",

@@ -110,6 +110,10 @@ std::vector<NamedTerm> error_terms(ModernSettings& settings) {
     ModernPropagationParameters& p = settings.propagation;
     MeasurementParameters& m = settings.measurement;
     return {{"signal_in_space", &p.signal_in_space, "orbit and clock of the satellite against what it broadcasts"},
+            {"satellite_antenna", &p.satellite_antenna, "phase centres of the satellites; with sky.antennas"},
+            {"receiver_antenna", &p.receiver_antenna, "phase centre of the receiver; with receiver.antenna_type"},
+            {"wind_up", &p.wind_up, "phase of antennas that turn against each other; with sky.orbits"},
+            {"solid_tide", &p.solid_tide, "the solid Earth's tides under the antenna; with sky.orbits"},
             {"ionosphere", &p.ionosphere, "delay of the true ionosphere, and with it the residual"},
             {"ionosphere_residual", &p.ionosphere_residual,
              "how the day departs from the model of the truth, and disturbances that travel"},
@@ -128,6 +132,7 @@ std::vector<NamedTerm> error_terms(ModernSettings& settings) {
             {"phase_noise", &m.phase_noise, "of the phase loop"},
             {"doppler_noise", &m.doppler_noise, "of the frequency loop"},
             {"multipath", &m.multipath, "echoes, in the code and a hundredth of it in the carrier"},
+            {"receiver_biases", &m.receiver_biases, "delays of its filters, by system and by channel of GLONASS"},
             {"receiver_clock", &m.receiver_clock, "bias and drift of the oscillator"},
             {"cycle_slips", &m.cycle_slips, "breaks of the carrier's count and unresolved half cycles"}};
 }

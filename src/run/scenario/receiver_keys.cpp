@@ -75,6 +75,12 @@ Phrases unheeded_model(const UsedReceiver& receiver, const ReceiverEntry&, const
                         model_name(scenario.model))};
 }
 
+// A sensor model measures nothing.
+Phrases unmeasured_antenna(const UsedReceiver& receiver, const ReceiverEntry&, const Scenario& scenario) {
+    if (receiver.measures) return {};
+    return {fmt::format("measures nothing with model.name = \"{}\"", model_name(scenario.model))};
+}
+
 Phrases shortened_hold(const UsedReceiver&, const ReceiverEntry& entry, const Scenario&) {
     constexpr double most_mps = 2.55;  // CFG-MOT-GNSSSPEED_THRS, U1, cm/s
     if (entry.static_hold_below.value() <= most_mps) return {};
@@ -162,6 +168,13 @@ void read_place_and_power_keys(TableReader& receiver, ReceiverEntry& entry, cons
     receiver.file_path("state_file", folder, entry.state_file,
                        {"keeps what the receiver saves for the next run", "none"});
     judge(receiver, "state_file", entry, without<command_input>);
+    receiver.text(
+        "antenna_type", entry.antenna_type,
+        {"antenna and radome as sky.antennas names them, such as `TRM59800.00 NONE`: the place is that of its "
+         "reference point",
+         "a point that is its phase centre"});
+    entry.told_at["antenna_type"] = receiver.told_at("antenna_type");
+    judge(receiver, "antenna_type", entry, unmeasured_antenna);
     constexpr double longest_arm_m = 1000;
     if (const auto offset = receiver.numbers(
             "antenna_offset_m", 3, "from the point that follows the trajectory to the antenna: forward, right, down",

@@ -85,9 +85,18 @@ struct RunSettings {
 /// In the place of navigation files: those of the day, whatever they are called.
 inline constexpr std::string_view automatic_navigation_word = "auto";
 
+/// Products that were computed afterwards.
+struct PreciseFiles {
+    std::vector<std::filesystem::path> orbits;  ///< SP3; empty: records are the truth
+    std::vector<std::filesystem::path> clocks;  ///< RINEX clock files; empty: those of the orbits
+    std::vector<std::filesystem::path> biases;  ///< SINEX BIAS; empty: codes are late as it is broadcast
+    std::filesystem::path antennas;             ///< ANTEX; empty: signals leave from the centre of mass
+};
+
 struct SkySettings {
     std::vector<std::filesystem::path> navigation;  ///< empty: the nominal sky
     bool automatic_navigation = false;              ///< that of the start's day in the cache, where there is one
+    PreciseFiles precise;                           ///< the truth behind what satellites send
     bool rebase_navigation = false;                 ///< move the data to the start time, keeping its time of day
     std::vector<Constellation> constellations;      ///< empty: all of the data; for sensor models gps and qzss
     std::optional<Angle> elevation_mask;            ///< nothing: the board's; of sensor models 5°
@@ -221,6 +230,7 @@ struct ReceiverEntry {
     bool power_up = false;  ///< it is switched on at the start of the run: banner, then `start`
     std::map<std::uint32_t, std::uint64_t> config{};  ///< raw values by the ids of items that its user has saved in it
     std::filesystem::path state_file;                 ///< keeps battery-backed memory and flash; empty: nothing does
+    std::string antenna_type;  ///< and radome, as catalogues name them; empty: measured at its phase centre
     std::array<double, 3> antenna_offset{};  ///< forward, right, down from the point that follows the trajectory, m
     std::optional<TrajectorySettings> trajectory{};  ///< of the vehicle it rides on; nothing: the scenario's
     std::optional<std::size_t> base;  ///< the receiver, by its place in the list, that carries the base antenna

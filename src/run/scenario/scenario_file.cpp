@@ -131,19 +131,46 @@ void read_run_keys(TableReader& run, RunSettings& settings) {
     run.number("speed", settings.speed, {1e-3, 1e6}, "`skyloop run` only: simulated seconds per second");
 }
 
-void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
+void read_files(TableReader& sky, std::string_view key, std::vector<std::filesystem::path>& paths,
+                const std::filesystem::path& folder, KeyText text) {
     std::vector<std::string> files;
-    sky.text_or_texts("navigation", files,
-                      {"navigation files: RINEX 2, 3 or 4, YUMA or SEM almanac, packed too; \"auto\": the file of the "
-                       "start's day that `skyloop fetch-nav` has put into the cache, else the nominal sky",
-                       "nominal sky"});
-    settings.automatic_navigation = std::find(files.begin(), files.end(), automatic_navigation_word) != files.end();
-    if (settings.automatic_navigation && files.size() > 1)
-        sky.mistake("navigation", "has files beside \"auto\"; expected either");
+    sky.text_or_texts(key, files, text);
     for (const std::string& file : files) {
-        if (file.empty()) sky.mistake("navigation", "is empty; expected the path of a file");
-        if (!settings.automatic_navigation) settings.navigation.push_back(folder / file);
+        if (file.empty()) sky.mistake(key, "is empty; expected the path of a file");
+        paths.push_back(folder / file);
     }
+}
+
+void read_precise_files(TableReader& sky, PreciseFiles& files, const std::filesystem::path& folder) {
+    read_files(sky, "orbits", files.orbits, folder,
+               {"SP3 files, packed too: where the satellites of `navigation` really are, and what their clocks show",
+                "the records are the truth"});
+    sky.where(!files.orbits.empty(), "with orbits", [&] {
+        read_files(sky, "clocks", files.clocks, folder,
+                   {"RINEX clock files, packed too: the clocks of `orbits`", "those of the SP3 files"});
+        read_files(sky, "biases", files.biases, folder,
+                   {"SINEX BIAS files (.BIA, .BSX), packed too: by how much each code of a satellite is late",
+                    "the group delays of the records"});
+        sky.file_path("antennas", folder, files.antennas,
+                      {"ANTEX file, packed too: where satellites and `antenna_type` of receivers have their phase "
+                       "centres",
+                       "signals leave from the centre of mass"});
+    });
+}
+
+void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
+    read_files(
+        sky, "navigation", settings.navigation, folder,
+        {"navigation files: RINEX 2, 3 or 4, YUMA or SEM almanac, packed too; \"auto\": the file of the start's day "
+         "that `skyloop fetch-nav` has put into the cache, else the nominal sky",
+         "nominal sky"});
+    const auto named_auto =
+        std::find(settings.navigation.begin(), settings.navigation.end(), folder / automatic_navigation_word);
+    settings.automatic_navigation = named_auto != settings.navigation.end();
+    if (settings.automatic_navigation && settings.navigation.size() > 1)
+        sky.mistake("navigation", "has files beside \"auto\"; expected either");
+    if (settings.automatic_navigation) settings.navigation.clear();
+    read_precise_files(sky, settings.precise, folder);
     sky.boolean("rebase_navigation", settings.rebase_navigation,
                 "move the data by whole days to the start time, keeping its time of day");
     read_constellation_list(sky, "constellations", settings.constellations,

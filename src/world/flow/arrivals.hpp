@@ -18,9 +18,11 @@ namespace skyloop::inline world {
 struct SignalArrival {
     Signal signal = Signal::l1;
     Hertz carrier;
-    Seconds group_delay;      ///< of the satellite's hardware against its clock
-    Decibels relative_power;  ///< C/N0 over that of the satellite's first signal
-    bool arrives = true;      ///< false: nothing of this signal reaches the antenna
+    Seconds group_delay;         ///< of the satellite's hardware against its clock
+    Decibels relative_power;     ///< C/N0 over that of the satellite's first signal
+    bool arrives = true;         ///< false: nothing of this signal reaches the antenna
+    Metres satellite_antenna{};  ///< what its phase centre adds to the range from the centre of mass
+    Metres receiver_antenna{};   ///< what the receiver's adds to the range to its reference point
 };
 
 /// One ray beside the one that is tracked: reflected, or bent around an edge. What is tracked is the direct ray, or the
@@ -57,7 +59,10 @@ struct Arrival {
     /// What of that makes up for a change of the broadcast record, with its rate and with changes that it leaves alone:
     /// range and clock step by the opposite, and the signal goes on.
     EarlierRecords earlier_records;
-    Metres false_range;                ///< what false signals add to the range, and a base station does not see
+    /// What the tides of the solid Earth add to the range, too slowly for the Doppler, as phase centres do.
+    Metres solid_tide{};
+    double wind_up = 0;  ///< cycles by which the antennas' turning against each other advances every carrier's phase
+    Metres false_range;  ///< what false signals add to the range, and a base station does not see
     MetresPerSecond false_range_rate;  ///< its derivative
     bool called_unhealthy = false;     ///< the satellite sends that it is not to be used, whatever its record says
     /// A fault leaves too little of it for a sensor model, which has no loops that could lose it.

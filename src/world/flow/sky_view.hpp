@@ -1,6 +1,7 @@
 /// Which satellites stand above the antenna.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/geo/frames.hpp"
@@ -10,6 +11,12 @@
 #include "world/gnss/signal.hpp"
 
 namespace skyloop::inline world {
+
+/// The true orbit and clock of a satellite against those of its record.
+struct RecordError {
+    Metres range;  ///< by how much the true range is longer than the record tells, satellite clock included
+    MetresPerSecond range_rate;  ///< its derivative
+};
 
 /// One satellite above the horizon, seen with light time and Earth rotation.
 struct SatelliteInView {
@@ -28,6 +35,9 @@ struct SatelliteInView {
     int iode = 0;
     bool healthy = true;
     EarlierRecords earlier_records;  ///< for models whose orbits are not quite those of the broadcast
+    /// By precise products, of the satellite's centre of mass; nothing: they do not tell of it. Then nothing of
+    /// `earlier_records` is left, for it does not step.
+    std::optional<RecordError> record_error{};
     /// Of the first signal; 0 for a satellite without signals.
     [[nodiscard]] Seconds group_delay() const { return signals.empty() ? Seconds(0) : signals.front().group_delay; }
 };

@@ -51,25 +51,81 @@ LagrangeWeights lagrange_weights(const std::array<double, lagrange_points>& t) {
     return weights;
 }
 
-// The clock between the rows around `time`; a row hit exactly needs no other.
-std::optional<double> clock_at(std::span<const PreciseSample> rows, GpsTime time) {
-    const auto next = std::lower_bound(rows.begin(), rows.end(), time,
-                                       [](const PreciseSample& row, GpsTime t) { return row.time < t; });
-    if (next == rows.end()) return std::nullopt;
-    if (next->time == time || next == rows.begin()) return next->time == time ? next->clock : std::nullopt;
-    const PreciseSample& before = *(next - 1);
-    if (!before.clock || !next->clock) return std::nullopt;
-    const double part = difference(time, before.time).value() / difference(next->time, before.time).value();
-    return *before.clock + part * (*next->clock - *before.clock);
+// The clock between the rows around `time`, or along the line of the nearest two outside; a row hit exactly needs no
+// other.
+template <class Row>
+std::optional<ClockReading> clock_at(std::span<const Row> rows, GpsTime time, Nanoseconds spacing) {
+    if (rows.size() < 2) return std::nullopt;
+    const auto next =
+        std::lower_bound(rows.begin(), rows.end(), time, [](const Row& r, GpsTime t) { return r.time < t; });
+    const auto at = std::clamp<std::ptrdiff_t>(next - rows.begin(), 1, static_cast<std::ptrdiff_t>(rows.size()) - 1);
+    const Row& after = rows[static_cast<std::size_t>(at)];
+    const Row& before = rows[static_cast<std::size_t>(at - 1)];
+    if (before.clock && after.clock && after.time - before.time <= spacing) {
+        const double drift = (*after.clock - *before.clock) / difference(after.time, before.time).value();
+        if (time == after.time) return ClockReading{*after.clock, drift};
+        return ClockReading{*before.clock + drift * difference(time, before.time).value(), drift};
+    }
+    for (const Row* row : {&before, &after})
+        if (row->time == time && row->clock) return ClockReading{*row->clock, 0};
+    return std::nullopt;
+}
+
+template <class Row>
+bool reaches(const std::vector<Row>& rows, GpsTime time, Nanoseconds beyond) {
+    return !rows.empty() && time >= rows.front().time - beyond && time <= rows.back().time + beyond;
+}
+
+template <class Row>
+std::optional<TimeSpan> span_of_rows(const std::map<SatelliteId, std::vector<Row>>& samples) {
+    std::optional<TimeSpan> span;
+    for (const auto& [satellite, rows] : samples) {
+        if (rows.empty()) continue;
+        if (!span) span = TimeSpan{rows.front().time, rows.back().time};
+        span->first = std::min(span->first, rows.front().time);
+        span->last = std::max(span->last, rows.back().time);
+    }
+    return span;
+}
+
+template <class Row>
+void add_rows(std::map<SatelliteId, std::vector<Row>>& samples, const std::map<SatelliteId, std::vector<Row>>& others) {
+    for (const auto& [satellite, rows] : others) {
+        std::vector<Row>& own = samples[satellite];
+        own.insert(own.end(), rows.begin(), rows.end());
+        std::stable_sort(own.begin(), own.end(), [](const Row& a, const Row& b) { return a.time < b.time; });
+        own.erase(std::unique(own.begin(), own.end(), [](const Row& a, const Row& b) { return a.time == b.time; }),
+                  own.end());
+    }
 }
 
 }  // namespace
 
-std::optional<PreciseState> PreciseOrbits::state(SatelliteId satellite, GpsTime time) const {
+std::optional<TimeSpan> PreciseOrbits::span() const { return span_of_rows(samples_); }
+
+void PreciseOrbits::add(const PreciseOrbits& other) {
+    add_rows(samples_, other.samples_);
+    spacing_ = std::max(spacing_, other.spacing_);
+}
+
+std::optional<TimeSpan> PreciseClocks::span() const { return span_of_rows(samples_); }
+
+void PreciseClocks::add(const PreciseClocks& other) {
+    add_rows(samples_, other.samples_);
+    spacing_ = std::max(spacing_, other.spacing_);
+}
+
+std::optional<ClockReading> PreciseClocks::at(SatelliteId satellite, GpsTime time, Nanoseconds beyond) const {
+    const auto own = samples_.find(satellite);
+    if (own == samples_.end() || !reaches(own->second, time, beyond)) return std::nullopt;
+    return clock_at<ClockSample>(own->second, time, spacing_);
+}
+
+std::optional<PreciseState> PreciseOrbits::state(SatelliteId satellite, GpsTime time, Nanoseconds beyond) const {
     const auto own = samples_.find(satellite);
     if (own == samples_.end() || own->second.size() < lagrange_points) return std::nullopt;
     const std::vector<PreciseSample>& all = own->second;
-    if (time < all.front().time || time > all.back().time) return std::nullopt;
+    if (!reaches(all, time, beyond)) return std::nullopt;
     const std::span<const PreciseSample> rows = rows_around(all, time, spacing_);
     if (rows.empty()) return std::nullopt;
 
@@ -89,7 +145,12 @@ std::optional<PreciseState> PreciseOrbits::state(SatelliteId satellite, GpsTime 
         velocity += weights.rate[i] * fixed;
     }
     velocity += earth_rotation_rate * Eigen::Vector3d(position.y(), -position.x(), 0);
-    return PreciseState{Position<Ecef>(position), Velocity<Ecef>(velocity), clock_at(rows, time)};
+    const std::optional<ClockReading> clock = clock_at(rows, time, spacing_);
+    PreciseState state{Position<Ecef>(position), Velocity<Ecef>(velocity), std::nullopt};
+    if (!clock) return state;
+    state.clock_bias = clock->bias;
+    state.clock_drift = clock->drift;
+    return state;
 }
 
 }  // namespace skyloop::inline world

@@ -144,8 +144,8 @@ double pair_delay(const Ephemeris& record, Signal first, Signal second) {
     return (square * d1->value() - d2->value()) / (square - 1);
 }
 
-// The same of the pair that tables of clocks belong to.
-double table_clock_delay(const Ephemeris& record) {
+// The same as pair_delay() of the pair that tables of clocks belong to.
+double table_pair_delay(const Ephemeris& record) {
     switch (satellite_of(record).constellation) {
         case Constellation::beidou:
             return pair_delay(record, Signal::b1i, Signal::b3i);
@@ -272,8 +272,10 @@ std::optional<Seconds> sent_group_delay(const Ephemeris& record, Signal signal) 
 std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal) {
     const auto delay = group_delay(record, signal);
     if (!delay) return std::nullopt;
-    return Seconds(delay->value() - table_clock_delay(record));
+    return Seconds(delay->value() - table_pair_delay(record));
 }
+
+Seconds table_clock_delay(const Ephemeris& record) { return Seconds(table_pair_delay(record)); }
 
 DbHz cn0_under_interference(DbHz cn0, Decibels jammer_to_signal, const InterferenceRejection& rejection) {
     const double noise = std::pow(10, -cn0.value() / 10);

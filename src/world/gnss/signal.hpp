@@ -91,6 +91,10 @@ std::optional<Seconds> sent_group_delay(const Ephemeris& record, Signal signal);
 /// TGD1; the pair B1I and B3I gives 2.94.)
 std::optional<Seconds> table_group_delay(const Ephemeris& record, Signal signal);
 
+/// What the clock of such a table is behind that of the record: group_delay() less table_group_delay(), as far as the
+/// record tells.
+Seconds table_clock_delay(const Ephemeris& record);
+
 /// Whether the satellite that has a PRN at a time sends L1, L2C or L5. Of the blocks, IIR-M is the first with L2C, IIF
 /// the first with L5 (IS-GPS-200, IS-GPS-705). A satellite counts from its launch on; one that will come under a PRN of
 /// today's Block IIR sends what that sends.

@@ -5,6 +5,7 @@
 #include "world/propagation/atmosphere_losses.hpp"
 #include "world/propagation/ionosphere_effects.hpp"
 #include "world/propagation/modern_link_budget.hpp"
+#include "world/propagation/precise_effects.hpp"
 #include "world/propagation/signal_in_space_error.hpp"
 #include "world/propagation/surroundings_effect.hpp"
 #include "world/propagation/troposphere_delay.hpp"
@@ -15,6 +16,20 @@ namespace {
 bool residual_wanted(const IonosphereParameters& parameters, std::optional<IonosphereModel> correction) {
     if (parameters.residual != Choice::automatic) return parameters.residual == Choice::on;
     return !correction || *correction == parameters.model;
+}
+
+// What only counts beside orbits and clocks of centimetres.
+void add_precise(std::vector<std::unique_ptr<PropagationEffect>>& effects,
+                 const ModernPropagationParameters& parameters, const ModernContext& context) {
+    if (!context.precise) return;
+    if (context.precise->antennas())
+        effects.push_back(
+            std::make_unique<SatelliteAntennaPhase>(context.precise->antennas(), parameters.satellite_antenna));
+    if (context.receiver_antenna)
+        effects.push_back(
+            std::make_unique<ReceiverAntennaPhase>(*context.receiver_antenna, parameters.receiver_antenna));
+    effects.push_back(std::make_unique<CarrierWindUp>(parameters.wind_up));
+    effects.push_back(std::make_unique<SolidTideEffect>(parameters.solid_tide));
 }
 
 }  // namespace
@@ -32,6 +47,7 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const Mod
     std::vector<std::unique_ptr<PropagationEffect>> effects;
     effects.push_back(std::make_unique<SignalInSpaceError>(parameters.signal_in_space_model, parameters.signal_in_space,
                                                            context.seed));
+    add_precise(effects, parameters, context);
     effects.push_back(std::make_unique<IonosphereDelay>(std::move(*truth), parameters, residual, context.seed));
     effects.push_back(std::make_unique<TroposphereDelay>(parameters, air, site, context.seed));
     effects.push_back(std::make_unique<GasLoss>(parameters.gas, context.geoid, context.gas_losses));

@@ -12,6 +12,7 @@
 #include "base/geo/geoid.hpp"
 #include "base/time/utc_time.hpp"
 #include "world/gnss/ephemeris.hpp"
+#include "world/gnss/precise_truth.hpp"
 #include "world/gnss/shell_ionosphere.hpp"
 #include "world/propagation/atmosphere_losses.hpp"
 #include "world/propagation/modern_parameters.hpp"
@@ -32,14 +33,18 @@ struct ModernContext {
     std::optional<IonosphereModel> galileo_correction{};
     std::optional<NamedIonosphereMaps> maps{};  ///< of kind `ionex`
     std::filesystem::path nequick_folder{};     ///< of kind `nequick_g`: share/skyloop/nequick_g
-    const Geoid* geoid = nullptr;               ///< must outlive the effects; without one heights stay ellipsoidal
+    /// Where the satellites are; null: where their records say, and nothing is as fine as what comes with it.
+    std::shared_ptr<const PreciseTruth> precise{};
+    std::optional<AntennaCalibration> receiver_antenna{};  ///< nothing: measured at its phase centre
+    const Geoid* geoid = nullptr;  ///< must outlive the effects; without one heights stay ellipsoidal
     LeapSeconds leap_seconds = LeapSeconds::announced();
     std::uint64_t seed = 1;
     /// Of L1. Its rows take milliseconds each: receivers of one thread share them.
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
 };
 
-/// The effects in the order of their application: signal in space, ionosphere, troposphere, losses, scintillation,
+/// The effects in the order of their application: signal in space, with precise products antennas, wind-up and tides,
+/// ionosphere, troposphere, losses, scintillation,
 /// link budget. Effects of the scene go before the last.
 ///
 /// Fails when the ionosphere is to come from maps that are not there or that do not cover the run and the globe

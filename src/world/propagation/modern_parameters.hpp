@@ -199,9 +199,11 @@ struct ModernPropagationParameters {
     ScintillationParameters scintillation_model;
 
     ErrorTerm signal_in_space;
-    ErrorTerm ionosphere;           ///< the model's delay, and with it the residual
-    ErrorTerm ionosphere_residual;  ///< what departs from the model
-    ErrorTerm troposphere;          ///< the model's delay
+    ErrorTerm satellite_antenna, receiver_antenna;  ///< phase centres; with precise products
+    ErrorTerm wind_up, solid_tide;                  ///< the same
+    ErrorTerm ionosphere;                           ///< the model's delay, and with it the residual
+    ErrorTerm ionosphere_residual;                  ///< what departs from the model
+    ErrorTerm troposphere;                          ///< the model's delay
     ErrorTerm troposphere_residual;
     ErrorTerm gas, clouds, rain, foliage;
     ErrorTerm channel;          ///< shadowing and echoes of the surroundings

@@ -50,6 +50,13 @@ LineOfSightShares line_of_sight_shares(const SatelliteInView& satellite, const T
     return shares;
 }
 
+// What precise products tell goes on smoothly: all of it makes up for what the record gets wrong and for its changes.
+void take_products(Arrival& arrival, const RecordError& error, double factor) {
+    arrival.signal_in_space_error = factor * error.range;
+    arrival.range_rate_error = factor * error.range_rate;
+    arrival.earlier_records = {arrival.signal_in_space_error, arrival.range_rate_error, std::nullopt};
+}
+
 }  // namespace
 
 SisreWeights sisre_weights(SatelliteId satellite) {
@@ -94,6 +101,10 @@ void SignalInSpaceError::apply(Arrivals& arrivals, const SkyView& sky, const Tru
     const double factor = term_.factor();
     if (factor == 0) return;
     for_each_arrival(arrivals, sky, [&](Arrival& arrival, const SatelliteInView& satellite) {
+        if (satellite.record_error) {
+            take_products(arrival, *satellite.record_error, factor);
+            return;
+        }
         Parts& parts = parts_.of(satellite.id, [this](SatelliteId id) { return parts_of(id); });
         const Eigen::Vector3d orbit(parts.radial.at(truth.time), parts.along.at(truth.time),
                                     parts.cross.at(truth.time));

@@ -30,7 +30,8 @@ OrbitClockSigmas orbit_clock_sigmas(SatelliteId satellite, const SignalInSpacePa
 
 /// Writes the signal-in-space error and its rate: radial, along-track, cross-track and clock error of each satellite,
 /// four smooth Gauss-Markov processes, seen along the line of sight (MODELS.md 7.1). The true orbit is the broadcast
-/// one plus the error, and goes on where the broadcast one steps.
+/// one plus the error, and goes on where the broadcast one steps. Of satellites that precise products tell of, the
+/// error is what their record really gets wrong (SatelliteInView::record_error).
 ///
 /// State: the processes of each satellite that has been in view.
 class SignalInSpaceError : public PropagationEffect {

@@ -4,10 +4,9 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <utility>
 
-#include "base/geo/local_frame.hpp"
 #include "world/gnss/constants.hpp"
-#include "world/gnss/orbit.hpp"
 #include "world/gnss/signal.hpp"
 
 namespace skyloop::inline world {
@@ -170,15 +169,16 @@ Seconds time_until_rise(Angle rough_elevation) {
 
 EcefMotion motion_of(const SatelliteState& state) { return {state.position, state.velocity}; }
 
-// From the satellite's state the usual travel time ago.
-SignalPath signal_path(const Ephemeris& ephemeris, const SatelliteState& usually, const TruthState& truth) {
+// From the satellite's state the usual travel time ago. @param state_at of a time before that of the truth, s
+template <class StateAt>
+SignalPath signal_path(const SatelliteState& usually, const TruthState& truth, StateAt&& state_at) {
     SignalPath path;
     path.travel_time = usual_travel_time;
     path.transmitter = usually;
     // By Newton's method: two steps reach the last bit, for the speed of a satellite changes by 1e-9 of that of light
     // in a second.
     for (int pass = 0; pass < 5; ++pass) {
-        if (pass > 0) path.transmitter = satellite_state(ephemeris, truth.time, -path.travel_time);
+        if (pass > 0) path.transmitter = state_at(-path.travel_time);
         path.seen_at = in_reception_frame(path.transmitter.position, path.travel_time);
         path.range = (path.seen_at - truth.position).length();
         const Seconds travel_time(path.range.value() / speed_of_light);
@@ -191,6 +191,25 @@ SignalPath signal_path(const Ephemeris& ephemeris, const SatelliteState& usually
         path.travel_time += error / (1 - slope.value() / speed_of_light);
     }
     return path;
+}
+
+MetresPerSecond range_rate_of(const SignalPath& path, const TruthState& truth) {
+    return light_time_range_rate(motion_of(path.transmitter), {truth.position, truth.velocity}, path.travel_time);
+}
+
+// Of a satellite that the products know. @param told the path from where the record has it
+std::optional<RecordError> record_error(const PreciseTruth& precise, const Ephemeris& record, const SignalPath& told,
+                                        const TruthState& truth) {
+    const SatelliteId id = satellite_of(record);
+    const auto usually = precise.state(id, truth.time, -usual_travel_time);
+    if (!usually) return std::nullopt;
+    const SignalPath path = signal_path(
+        *usually, truth, [&](Seconds offset) { return precise.state(id, truth.time, offset).value_or(*usually); });
+    const double clock = path.transmitter.clock_bias + table_clock_delay(record).value() - told.transmitter.clock_bias;
+    const double drift = path.transmitter.clock_drift - told.transmitter.clock_drift;
+    return RecordError{
+        path.range - told.range - Metres(speed_of_light * clock),
+        range_rate_of(path, truth) - range_rate_of(told, truth) - MetresPerSecond(speed_of_light * drift)};
 }
 
 RecordRay ray_of(const SignalPath& path, const TruthState& truth) {
@@ -206,8 +225,7 @@ SatelliteInView in_view(const Ephemeris& record, const SignalPath& path, const L
     seen.azimuth = look.azimuth;
     seen.elevation = look.elevation;
     seen.range = path.range;
-    seen.range_rate =
-        light_time_range_rate(motion_of(path.transmitter), {truth.position, truth.velocity}, path.travel_time);
+    seen.range_rate = range_rate_of(path, truth);
     seen.travel_time = path.travel_time;
     seen.position_at_transmission = path.transmitter.position;
     seen.velocity_at_transmission = path.transmitter.velocity;
@@ -236,6 +254,39 @@ void SkyObserver::begin(const TruthState& truth, const NavigationSource& source)
         satellite.look_again = truth.time;
 }
 
+std::optional<SatelliteInView> SkyObserver::look(Satellite& satellite, const TruthState& truth, const LocalFrame& local,
+                                                 const NavigationSource& source) {
+    const std::optional<Ephemeris> record = source.ephemeris(satellite.id, truth.time);
+    if (!record) return std::nullopt;
+    const auto* glonass = std::get_if<GlonassEphemeris>(&*record);
+    const Ephemeris orbit = glonass ? Ephemeris(carried_.at(*glonass, truth.time)) : *record;
+    // A look without light time tells most: half of the satellites stand far below the horizon, and in a tenth of a
+    // second a satellite moves by less than a kilometre.
+    const SatelliteState usually = satellite_state(orbit, truth.time, -usual_travel_time);
+    const Angle rough = local.look_angles(usually.position).elevation;
+    if (rough.deg() < sure_to_be_down_deg) {
+        satellite.look_again = advanced(truth.time, time_until_rise(rough));
+        return std::nullopt;
+    }
+    const SignalPath path =
+        signal_path(usually, truth, [&](Seconds offset) { return satellite_state(orbit, truth.time, offset); });
+    // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the
+    // light time. It would turn them by less than 0.0004°.
+    const LookAngles direction = local.look_angles(path.transmitter.position);
+    if (direction.elevation.rad() < 0) return std::nullopt;
+    SatelliteInView seen = in_view(*record, path, direction, truth);
+    if (precise_ == nullptr || !precise_->knows(satellite.id)) {
+        seen.earlier_records = changes_.at(*record, source, truth.time, ray_of(path, truth));
+        return seen;
+    }
+    seen.record_error = record_error(*precise_, *record, path, truth);
+    if (!seen.record_error) return std::nullopt;
+    for (TransmittedSignal& signal : seen.signals)
+        if (const auto late = precise_->code_bias(satellite.id, signal.signal, truth.time))
+            signal.group_delay = *late + table_clock_delay(*record);
+    return seen;
+}
+
 SkyView SkyObserver::observe(const TruthState& truth, const NavigationSource& source) {
     begin(truth, source);
     const LocalFrame local(truth.geodetic);
@@ -243,31 +294,14 @@ SkyView SkyObserver::observe(const TruthState& truth, const NavigationSource& so
     sky.satellites.reserve(satellites_.size() / 2);
     for (Satellite& satellite : satellites_) {
         if (truth.time < satellite.look_again) continue;
-        const std::optional<Ephemeris> record = source.ephemeris(satellite.id, truth.time);
-        if (!record) continue;
-        const auto* glonass = std::get_if<GlonassEphemeris>(&*record);
-        const Ephemeris orbit = glonass ? Ephemeris(carried_.at(*glonass, truth.time)) : *record;
-        // A look without light time tells most: half of the satellites stand far below the horizon, and in a tenth of a
-        // second a satellite moves by less than a kilometre.
-        const SatelliteState usually = satellite_state(orbit, truth.time, -usual_travel_time);
-        const Angle rough = local.look_angles(usually.position).elevation;
-        if (rough.deg() < sure_to_be_down_deg) {
-            satellite.look_again = advanced(truth.time, time_until_rise(rough));
-            continue;
-        }
-        const SignalPath path = signal_path(orbit, usually, truth);
-        // The usual convention, and that of the reference scenes: directions leave out the Earth's rotation during the
-        // light time. It would turn them by less than 0.0004°.
-        const LookAngles look = local.look_angles(path.transmitter.position);
-        if (look.elevation.rad() < 0) continue;
-        sky.satellites.push_back(in_view(*record, path, look, truth));
-        sky.satellites.back().earlier_records = changes_.at(*record, source, truth.time, ray_of(path, truth));
+        if (std::optional<SatelliteInView> seen = look(satellite, truth, local, source))
+            sky.satellites.push_back(std::move(*seen));
     }
     return sky;
 }
 
-SkyView observe_sky(const TruthState& truth, const NavigationSource& source) {
-    SkyObserver observer;
+SkyView observe_sky(const TruthState& truth, const NavigationSource& source, const PreciseTruth* precise) {
+    SkyObserver observer(precise);
     return observer.observe(truth, source);
 }
 

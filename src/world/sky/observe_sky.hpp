@@ -1,6 +1,7 @@
 /// From orbits and a place to what stands in the sky.
 /// A signal's way from a moving transmitter to a moving receiver on the turning Earth.
 /// Changes of broadcast records, and what they leave behind.
+/// How far records are from the truth of precise products.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,11 +12,13 @@
 
 #include "base/core/units.hpp"
 #include "base/geo/frames.hpp"
+#include "base/geo/local_frame.hpp"
 #include "world/flow/earlier_records.hpp"
 #include "world/flow/sky_view.hpp"
 #include "world/flow/truth_state.hpp"
 #include "world/gnss/ephemeris.hpp"
 #include "world/gnss/orbit.hpp"
+#include "world/gnss/precise_truth.hpp"
 
 namespace skyloop::inline world {
 
@@ -79,7 +82,9 @@ private:
 
 /// Every satellite of `source` above the horizon at `truth.time`, with light time iterated and the Earth's rotation
 /// during it (MODELS.md 3.4). Satellites without a valid record are absent.
-SkyView observe_sky(const TruthState& truth, const NavigationSource& source);
+/// @param precise where the satellites really are; null: where their records say. Satellites that it knows and cannot
+/// tell of at this instant are absent, those that it does not know are not
+SkyView observe_sky(const TruthState& truth, const NavigationSource& source, const PreciseTruth* precise = nullptr);
 
 /// Gives what observe_sky() gives, faster when epochs follow each other: a satellite far below the horizon is not
 /// looked at before it could have risen, and a GLONASS orbit is integrated from minute to minute, not from its record
@@ -89,6 +94,8 @@ SkyView observe_sky(const TruthState& truth, const NavigationSource& source);
 /// in time or place makes it look at everything.
 class SkyObserver {
 public:
+    /// @param precise as that of observe_sky(), which it outlives
+    explicit SkyObserver(const PreciseTruth* precise = nullptr) : precise_(precise) {}
     /// @param source the same at every call
     SkyView observe(const TruthState& truth, const NavigationSource& source);
 
@@ -98,7 +105,10 @@ private:
         GpsTime look_again;  ///< it stays below the horizon until then
     };
     void begin(const TruthState& truth, const NavigationSource& source);
+    [[nodiscard]] std::optional<SatelliteInView> look(Satellite& satellite, const TruthState& truth,
+                                                      const LocalFrame& local, const NavigationSource& source);
 
+    const PreciseTruth* precise_;
     CarriedRecords carried_;
     RecordChanges changes_;
     std::vector<Satellite> satellites_;

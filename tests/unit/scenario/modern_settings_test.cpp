@@ -16,7 +16,7 @@ using testing::Contains;
 TEST(ErrorTerms, EachIsNamedOnceAndIsItsOwn) {
     ModernSettings settings;
     const auto terms = error_terms(settings);
-    EXPECT_EQ(terms.size(), 20U);
+    EXPECT_EQ(terms.size(), 25U);
     std::set<std::string_view> names;
     std::set<const ErrorTerm*> places;
     for (const NamedTerm& named : terms) {

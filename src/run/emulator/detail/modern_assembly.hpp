@@ -35,6 +35,8 @@ struct WorldData {
     GpsTime start;
     DataFolders data;
     std::shared_ptr<GasLossTable> gas_losses;
+    std::shared_ptr<const PreciseTruth> precise{};  ///< null: records are the truth
+    const ReceiverEntry* receiver = nullptr;        ///< whose antenna it is; null: that of nobody, a point
 };
 
 /// From what the effects of the modern profile are made.
@@ -42,7 +44,7 @@ struct ModernWorld {
     ModernPropagationParameters parameters;
     ModernContext context;
 };
-/// That of a scenario. Fails with `input` when the maps that it needs are missing.
+/// That of a scenario. Fails with `input` when the maps that it needs are missing, or the calibration of the antenna.
 Result<ModernWorld> modern_world_of(const Scenario& scenario, const NavigationSource& navigation,
                                     const WorldData& world);
 /// The effects of the modern profile, from a scenario's settings. Fails with `input` when a file they need is missing

@@ -19,7 +19,8 @@ struct SharedParts {
     std::shared_ptr<const NavigationSource> navigation;
     const Geoid* geoid = nullptr;
     GpsTime start;
-    std::shared_ptr<const UrbanScene> scene;  // null: nothing stands around
+    std::shared_ptr<const UrbanScene> scene;        // null: nothing stands around
+    std::shared_ptr<const PreciseTruth> precise{};  // null: records are the truth
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
     std::shared_ptr<const OsnmaKeys> osnma = osnma_keys_of(scenario, start);  // null: there is none
 };

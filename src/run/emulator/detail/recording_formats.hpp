@@ -29,6 +29,10 @@ inline constexpr std::string_view satellites_header =
     "false_range_m,state,shadowing_db,fading_db,free_space_loss_db,iono_loss_db,reflection_loss_db,"
     "received_power_dbw\n";
 
+/// What comes behind `satellites_header`, in the place of its end, in a run with precise products.
+inline constexpr std::string_view precise_satellites_header =
+    ",satellite_antenna_m,receiver_antenna_m,solid_tide_m,wind_up_cycles\n";
+
 /// The row of fixes.csv of one epoch; without a position its columns are empty.
 std::string fix_row(const Trace& trace);
 
@@ -36,7 +40,8 @@ std::string fix_row(const Trace& trace);
 /// `pseudorange_m` is what the receiver measured; sensor models that add errors to the truth measure nothing, and there
 /// it is what a receiver with a perfect clock and no noise would measure through the applied delays. Without it a
 /// satellite is not tracked: nothing measures its first signal, or a sensor model reports no C/N0 of it.
-std::string satellite_rows(const Trace& trace);
+/// @param precise with the columns of `precise_satellites_header`
+std::string satellite_rows(const Trace& trace, bool precise = false);
 
 /// What the two files begin with.
 struct RinexRecordingSetup {
