@@ -95,6 +95,7 @@ constexpr std::array made_blocks{
     MadeBlock{"GPSRawCA", pages<SbfGpsRawCa>, Pace::on_change},
     MadeBlock{"GLORawCA", pages<SbfGloRawCa>, Pace::on_change},
     MadeBlock{"GALRawINAV", pages<SbfGalRawInav>, Pace::on_change},
+    MadeBlock{"GEORawL1", pages<SbfGeoRawL1>, Pace::on_change},
     MadeBlock{"BDSRaw", pages<SbfBdsRaw>, Pace::on_change},
     MadeBlock{"QZSRawL1CA", pages<SbfQzsRawL1Ca>, Pace::on_change},
     MadeBlock{"GPSNav", records<SbfGpsNav>, Pace::on_change},

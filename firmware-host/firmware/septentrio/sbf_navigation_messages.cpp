@@ -35,6 +35,8 @@ std::uint16_t block_of_pages(const Subframe& message) {
             return SbfGalRawInav::block_number;
         case Constellation::beidou:
             return SbfBdsRaw::block_number;
+        case Constellation::sbas:
+            return SbfGeoRawL1::block_number;
         default:
             return 0;
     }
@@ -83,6 +85,8 @@ std::vector<std::uint32_t> sbf_bits(const Subframe& message) {
             return string_bits(message.words);
         case Constellation::beidou:
             return d1_bits(message.words);
+        case Constellation::sbas:
+            return message.words;
         default:
             return lnav_bits(message.words);
     }
@@ -116,6 +120,8 @@ Bytes page_of(std::uint16_t number, const Subframe& message, const NavigationSta
             return raw_page<SbfGalRawInav>(message, state);
         case SbfBdsRaw::block_number:
             return raw_page<SbfBdsRaw>(message, state);
+        case SbfGeoRawL1::block_number:
+            return raw_page<SbfGeoRawL1>(message, state);
         default:
             return {};
     }

@@ -8,9 +8,9 @@
 namespace skyloop::inline receiver {
 
 using KnownSbfBlocks =
-    MessageTypes<SbfMeasEpoch, SbfMeasExtra, SbfEndOfMeas, SbfGpsRawCa, SbfGloRawCa, SbfGalRawInav, SbfBdsRaw,
-                 SbfQzsRawL1Ca, SbfGpsNav, SbfGloNav, SbfGalNav, SbfBdsNav, SbfQzsNav, SbfPvtCartesian, SbfPvtGeodetic,
-                 SbfPosCovCartesian, SbfPosCovGeodetic, SbfVelCovCartesian, SbfVelCovGeodetic, SbfDop,
+    MessageTypes<SbfMeasEpoch, SbfMeasExtra, SbfEndOfMeas, SbfGpsRawCa, SbfGloRawCa, SbfGalRawInav, SbfGeoRawL1,
+                 SbfBdsRaw, SbfQzsRawL1Ca, SbfGpsNav, SbfGloNav, SbfGalNav, SbfBdsNav, SbfQzsNav, SbfPvtCartesian,
+                 SbfPvtGeodetic, SbfPosCovCartesian, SbfPosCovGeodetic, SbfVelCovCartesian, SbfVelCovGeodetic, SbfDop,
                  SbfBaseVectorCart, SbfBaseVectorGeod, SbfEndOfPvt, SbfAttEuler, SbfAttCovEuler, SbfAuxAntPositions,
                  SbfEndOfAtt, SbfReceiverTime, SbfChannelStatus, SbfReceiverStatus, SbfSatVisibility, SbfQualityInd,
                  SbfRfStatus, SbfGalAuthStatus, SbfReceiverSetup>;

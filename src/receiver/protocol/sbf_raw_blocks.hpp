@@ -130,6 +130,8 @@ constexpr std::string_view sbf_page_name(std::uint16_t number) {
     switch (number) {
         case 4017:
             return "GPSRawCA";
+        case 4020:
+            return "GEORawL1";
         case 4023:
             return "GALRawINAV";
         case 4026:
@@ -163,6 +165,8 @@ struct SbfRawPage {
 using SbfGpsRawCa = SbfRawPage<4017, 10>;
 /// An even and an odd page of I/NAV: 114 bits, without the tail, and 120.
 using SbfGalRawInav = SbfRawPage<4023, 8>;
+/// A message of 250 bits.
+using SbfGeoRawL1 = SbfRawPage<4020, 8>;
 using SbfGloRawCa = SbfRawPage<4026, 3>;
 using SbfBdsRaw = SbfRawPage<4047, 10>;
 using SbfQzsRawL1Ca = SbfRawPage<4066, 10>;
