@@ -98,6 +98,7 @@ constexpr std::array made_blocks{
     MadeBlock{"GLORawCA", pages<SbfGloRawCa>, Pace::on_change},
     MadeBlock{"GALRawFNAV", pages<SbfGalRawFnav>, Pace::on_change},
     MadeBlock{"GALRawINAV", pages<SbfGalRawInav>, Pace::on_change},
+    MadeBlock{"GEORawL1", pages<SbfGeoRawL1>, Pace::on_change},
     MadeBlock{"BDSRaw", pages<SbfBdsRaw>, Pace::on_change},
     MadeBlock{"QZSRawL1CA", pages<SbfQzsRawL1Ca>, Pace::on_change},
     MadeBlock{"QZSRawL2C", pages<SbfQzsRawL2c>, Pace::on_change},

@@ -36,6 +36,8 @@ std::uint16_t block_of_pages(const Subframe& message) {
             return l5 ? SbfGalRawFnav::block_number : SbfGalRawInav::block_number;
         case Constellation::beidou:
             return SbfBdsRaw::block_number;
+        case Constellation::sbas:
+            return SbfGeoRawL1::block_number;
         default:
             return 0;
     }
@@ -91,6 +93,8 @@ std::vector<std::uint32_t> sbf_bits(const Subframe& message) {
             return string_bits(message.words);
         case Constellation::beidou:
             return d1_bits(message.words);
+        case Constellation::sbas:
+            return message.words;
         default:
             return second ? cnav_bits(message.words) : lnav_bits(message.words);
     }
@@ -122,7 +126,7 @@ struct PageBlocks {
     }
 };
 using KnownPages = PageBlocks<SbfGpsRawCa, SbfGpsRawL2c, SbfGpsRawL5, SbfQzsRawL1Ca, SbfQzsRawL2c, SbfQzsRawL5,
-                              SbfGloRawCa, SbfGalRawInav, SbfGalRawFnav, SbfBdsRaw>;
+                              SbfGloRawCa, SbfGalRawInav, SbfGalRawFnav, SbfGeoRawL1, SbfBdsRaw>;
 
 float semicircles(double radians) { return static_cast<float>(radians * per_semicircle); }
 

@@ -95,12 +95,14 @@ constexpr std::string_view blocks =
     "GEOIGPMask GEOLongTermCorr GEOIonoDelay GEOServiceLevel GEOClockEphCovMatrix";
 // Groups, and of their blocks those that this receiver has.
 constexpr std::string_view support_blocks =
-    "MeasEpoch+MeasExtra+EndOfMeas+GPSRawCA+GLORawCA+GALRawINAV+BDSRaw+QZSRawL1CA+GPSNav+GLONav+GALNav+BDSNav+QZSNav+"
+    "MeasEpoch+MeasExtra+EndOfMeas+GPSRawCA+GLORawCA+GALRawINAV+GEORawL1+BDSRaw+QZSRawL1CA+GPSNav+GLONav+GALNav+BDSNav+"
+    "QZSNav+"
     "PVTGeodetic+PosCovGeodetic+BaseVectorGeod+DOP+EndOfPVT+ChannelStatus+ReceiverStatus+ReceiverSetup+QualityInd+"
     "RFStatus+GALAuthStatus";
 constexpr std::array<std::pair<std::string_view, std::string_view>, 18> block_groups{{
     {"Measurements", "MeasEpoch+MeasExtra+EndOfMeas"},
-    {"RawNavBits", "GPSRawCA+GPSRawL2C+GPSRawL5+GLORawCA+GALRawFNAV+GALRawINAV+BDSRaw+QZSRawL1CA+QZSRawL2C+QZSRawL5"},
+    {"RawNavBits",
+     "GPSRawCA+GPSRawL2C+GPSRawL5+GLORawCA+GALRawFNAV+GALRawINAV+GEORawL1+BDSRaw+QZSRawL1CA+QZSRawL2C+QZSRawL5"},
     {"GPS", "GPSNav"},
     {"GLO", "GLONav"},
     {"GAL", "GALNav"},
@@ -113,7 +115,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 18> block_gr
     {"Time", "ReceiverTime"},
     {"Status", "ChannelStatus+ReceiverStatus+SatVisibility+QualityInd+RFStatus+GALAuthStatus"},
     {"PostProcess",
-     "MeasEpoch+MeasExtra+EndOfMeas+GPSRawCA+GLORawCA+GALRawINAV+BDSRaw+QZSRawL1CA+GPSNav+GLONav+GALNav+BDSNav+QZSNav+"
+     "MeasEpoch+MeasExtra+EndOfMeas+GPSRawCA+GLORawCA+GALRawINAV+GEORawL1+BDSRaw+QZSRawL1CA+GPSNav+GLONav+GALNav+"
+     "BDSNav+QZSNav+"
      "BaseVectorGeod+ReceiverSetup"},
     {"Rinex", "MeasEpoch+GPSNav+GLONav+GALNav+BDSNav+QZSNav+ReceiverSetup"},
     {"Rinex3", "MeasEpoch+GPSNav+GLONav+GALNav+BDSNav+QZSNav+ReceiverSetup"},

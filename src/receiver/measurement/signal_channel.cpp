@@ -44,12 +44,6 @@ Metres known_deviation(const MeasurementParameters& p, Metres code, DbHz cn0) {
     return Metres(root_of_squares(strong, p.range_deviation_weak.value() * std::pow(10, (30 - cn0.value()) / 10)));
 }
 
-// SBAS corrects GPS alone today (EGNOS Open Service SDD 2.3, WAAS Performance Standard).
-std::optional<Metres> augmentation_of(const Arrival& arrival, Metres iono) {
-    if (arrival.id.constellation != Constellation::gps) return std::nullopt;
-    return arrival.signal_in_space_error + iono;
-}
-
 DbHz reported_cn0(DbHz cn0, Decibels resolution) {
     // Of RTCM's six bits (10403.3, DF403), where receivers' own estimates end, too; what has gone all of a sudden is
     // tracked for a moment yet.
@@ -259,7 +253,6 @@ Observation SignalChannel::observation(const ChannelInput& input, const ChannelE
     result.half_cycle_resolved = lock_.half_cycle_resolved();
     result.called_unhealthy = arrival.called_unhealthy;
     if (arrival.echoes_known) result.correlation_distortion = std::abs(echoes_.distortion);
-    result.augmentation = augmentation_of(arrival, Metres(iono));
     if (!lock_.phase_locked()) return result;
     const double carrier_path =
         path - iono + bias.phase.value() + terms_.phase_multipath.value() + terms_.phase_noise.value();

@@ -134,6 +134,8 @@ constexpr std::string_view sbf_page_name(std::uint16_t number) {
             return "GPSRawL2C";
         case 4019:
             return "GPSRawL5";
+        case 4020:
+            return "GEORawL1";
         case 4022:
             return "GALRawFNAV";
         case 4023:
@@ -173,6 +175,8 @@ struct SbfRawPage {
 using SbfGpsRawCa = SbfRawPage<4017, 10>;
 /// An even and an odd page of I/NAV: 114 bits, without the tail, and 120.
 using SbfGalRawInav = SbfRawPage<4023, 8>;
+/// A message of 250 bits.
+using SbfGeoRawL1 = SbfRawPage<4020, 8>;
 using SbfGloRawCa = SbfRawPage<4026, 3>;
 using SbfBdsRaw = SbfRawPage<4047, 10>;
 using SbfQzsRawL1Ca = SbfRawPage<4066, 10>;

@@ -9,7 +9,6 @@ namespace skyloop::inline receiver {
 void EquationMaker::reset() {
     choice_.reset();
     ionosphere_.reset();
-    augmentation_.reset();
 }
 
 bool EquationMaker::takes(const Observation& observation, const ReceiverSettings& settings) const {
@@ -23,26 +22,21 @@ void EquationMaker::add(TransmitterSource& transmitters, const Observation& firs
     auto made = range_equation(transmitters, first, combined ? others : none, receive_time);
     if (!made) return;
     made->selected = choice_.takes(first);
-    const bool augmented = !corrected_ && parameters_.differential.kind == DifferentialKind::none;
-    if (augmented && augmentation_.serves() && first.augmentation) {
-        made->pseudorange -= (1 - parameters_.differential.sbas_left) * *first.augmentation;
-        made->carrier = Hertz(0);
-        made->augmented = true;
-    } else if (!corrected_ && !combined) {
+    // Asked at every epoch, as it averages.
+    if (!corrected_ && !combined)
         made->ionosphere = ionosphere_.measure(transmitters, made->transmitter, first, others, receive_time);
-    }
+    if (!corrected_ && made->carrier > Hertz(0) && parameters_.differential.kind == DifferentialKind::none)
+        augmentation_.correct(*made);
     epoch.equations.push_back(*made);
     epoch.primaries.push_back(&first);
 }
 
 EpochEquations EquationMaker::make(TransmitterSource& transmitters, const Observations& observations,
-                                   const ReceiverSettings& settings, const std::optional<Geodetic>& place,
-                                   bool corrected) {
+                                   const ReceiverSettings& settings, bool corrected) {
     const std::vector<Observation>& all = observations.signals;
     EpochEquations epoch;
     corrected_ = corrected;
     choice_.begin(observations);
-    augmentation_.update(observations, settings, place);
     for (std::size_t i = 0; i < all.size();) {
         // The signals of one satellite: its first one, or what there is, and the others.
         const Observation* first = nullptr;

@@ -20,16 +20,19 @@ struct EpochEquations {
 
 /// Chooses the satellites, and takes off their ranges what SBAS and a second carrier say of them.
 ///
-/// State: which satellites are used, what each showed of the ionosphere, whether SBAS serves.
+/// State: which satellites are used, what each showed of the ionosphere.
 class EquationMaker {
 public:
-    explicit EquationMaker(const NavigationParameters& parameters)
-        : parameters_(parameters), choice_(parameters.use), ionosphere_(parameters.corrections.ionosphere_memory) {}
+    /// @param augmentation begun for each epoch before its ranges are made; outlives this
+    EquationMaker(const NavigationParameters& parameters, const Augmentation& augmentation)
+        : parameters_(parameters),
+          choice_(parameters.use),
+          ionosphere_(parameters.corrections.ionosphere_memory),
+          augmentation_(augmentation) {}
 
-    /// @param place where the receiver believes to be  @param corrected by a base station, so that nothing else is
-    /// @param observations outlive what is returned
+    /// @param corrected by a base station, so that nothing else is  @param observations outlive what is returned
     EpochEquations make(TransmitterSource& transmitters, const Observations& observations,
-                        const ReceiverSettings& settings, const std::optional<Geodetic>& place, bool corrected);
+                        const ReceiverSettings& settings, bool corrected);
     /// The epoch has a sound fix in three dimensions, or none.
     void solved(bool soundly) { choice_.solved(soundly); }
     /// The receiver has started anew.
@@ -43,7 +46,7 @@ private:
     NavigationParameters parameters_;
     SatelliteChoice choice_;
     TwoBandIonosphere ionosphere_;
-    Augmentation augmentation_;
+    const Augmentation& augmentation_;
     bool corrected_ = false;  // in this epoch
 };
 

@@ -32,7 +32,7 @@ NavigationEngine::State::State(const NavigationParameters& parameters, const Nav
       smoother_(parameters.filter.code_smoothing),
       filter_(parameters.filter),
       report_(*knowledge.broadcast, received_),
-      maker_(parameters),
+      maker_(parameters, augmentation_),
       noise_(parameters.filter.kind),
       baseline_(parameters.carrier, air_),
       pair_(parameters.carrier, air_),
@@ -46,6 +46,7 @@ void NavigationEngine::State::begin(const ReceiverSettings& settings, GpsTime ti
     filter_.reset();
     smoother_.reset();
     report_.reset();
+    augmentation_.reset();
     maker_.reset();
     baseline_.reset();
     pair_.reset();
@@ -138,7 +139,8 @@ EpochSolution NavigationEngine::State::solve_epoch(const Observations& observati
         const Observations& used = corrected(observations, settings.corrections);
         const bool with_reference = corrected_ != CorrectionState::none;
         const auto place = position_ ? std::optional(to_geodetic(*position_)) : std::nullopt;
-        static_cast<EpochEquations&>(epoch) = maker_.make(transmitters(), used, settings, place, with_reference);
+        augmentation_.begin({received_, observations, settings, time_, place});
+        static_cast<EpochEquations&>(epoch) = maker_.make(transmitters(), used, settings, with_reference);
         solve_position(settings, epoch);
         if (!epoch.point) return epoch;
         if (keep_strongest(*epoch.point, settings.most_satellites, epoch.equations, epoch.primaries)) {
@@ -252,6 +254,9 @@ NavigationEngine& NavigationEngine::operator=(NavigationEngine&&) noexcept = def
 
 Fix NavigationEngine::solve(const Observations& observations, const ReceiverSettings& settings) {
     return state_->solve(observations, settings);
+}
+void NavigationEngine::hear(std::span<const Subframe> messages, const ReceiverSettings& settings) {
+    state_->hear(messages, settings);
 }
 bool NavigationEngine::velocity_known() const { return state_->velocity_known(); }
 std::optional<RelativePosition> NavigationEngine::relate(const Observations& observations,

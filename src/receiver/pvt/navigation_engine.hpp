@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "base/geo/geodetic.hpp"
 #include "base/geo/geoid.hpp"
@@ -30,7 +31,8 @@ struct NavigationKnowledge {
 
 /// Solves position, velocity and time, watches the residuals, and smooths.
 ///
-/// State: the filter, which records have been received, and since when each satellite is tracked.
+/// State: the filter, which records and which messages of SBAS have been received, and since when each satellite is
+/// tracked.
 class NavigationEngine {
 public:
     NavigationEngine(const NavigationParameters& parameters, const NavigationKnowledge& knowledge);
@@ -38,6 +40,8 @@ public:
     NavigationEngine(NavigationEngine&&) noexcept;
     NavigationEngine& operator=(NavigationEngine&&) noexcept;
 
+    /// Messages that were received since the epoch before, of which those of SBAS are used.
+    void hear(std::span<const Subframe> messages, const ReceiverSettings& settings);
     /// The fix of one epoch; epochs come in ascending time.
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
     /// Whether the last fix has a velocity that was measured: without Dopplers it is told as 0.

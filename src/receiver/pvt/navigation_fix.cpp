@@ -56,15 +56,19 @@ Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& f
     return Metres(std::sqrt(q(2, 2)));
 }
 
+bool NavigationEngine::State::is_augmented(const EpochSolution& epoch) const {
+    constexpr int enough = 4;  // augmented ranges for a position of their own
+    int augmented = 0;
+    for (std::size_t i = 0; i < epoch.equations.size(); ++i)
+        augmented += epoch.equations[i].sbas && epoch.point->ranges[i].used ? 1 : 0;
+    return augmented >= enough;
+}
+
 FixType NavigationEngine::State::type_of(const EpochSolution& epoch) const {
     if (epoch.point->height_held) return FixType::fix_2d;
     static constexpr std::array differential{FixType::fix_3d, FixType::dgnss, FixType::rtk_float, FixType::rtk_fixed};
     const FixType type = differential[static_cast<std::size_t>(differential_kind())];
-    constexpr int enough = 4;  // augmented ranges for a position of their own
-    int augmented = 0;
-    for (std::size_t i = 0; i < epoch.equations.size(); ++i)
-        augmented += epoch.equations[i].augmented && epoch.point->ranges[i].used ? 1 : 0;
-    return type == FixType::fix_3d && augmented >= enough ? FixType::dgnss : type;
+    return type == FixType::fix_3d && is_augmented(epoch) ? FixType::dgnss : type;
 }
 
 void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix) {
@@ -99,6 +103,7 @@ void NavigationEngine::State::fill_solved(const EpochSolution& epoch, const Rece
     }
     fill_motion(filtered, settings, fix);
     fix.type = type_of(epoch);
+    if (fix.type == FixType::dgnss && is_augmented(epoch)) fix.sbas_source = augmentation_.source();
     const Metres height_deviation = fill_accuracy(epoch, fix);
     if (point.height_held) return;
     const MetresPerSecond rate(std::hypot(fix.velocity.down, fix.speed_accuracy.value()));

@@ -157,6 +157,7 @@ void SatelliteReport::add_tracked(const ReportInput& input, std::vector<Satellit
         found->elevation = range.direction.elevation;
         found->used = range.used;
         found->residual = range.residual;
+        if (range.used) found->sbas = input.equations[i].sbas;
         solved[static_cast<std::size_t>(found - list.begin())] = 1;
     }
     if (!input.position) return;

@@ -9,6 +9,7 @@
 
 #include "receiver/pvt/corrections.hpp"
 #include "receiver/pvt/transmitter.hpp"
+#include "world/flow/fix.hpp"
 #include "world/gnss/dop.hpp"
 
 namespace skyloop::inline receiver {
@@ -33,7 +34,7 @@ struct RangeEquation {
     Metres deviation;  ///< 1 σ of the loops
     bool excluded = false;
     bool selected = true;                       ///< the receiver uses this satellite at all
-    bool augmented = false;                     ///< corrected by SBAS
+    std::optional<AppliedSbas> sbas{};          ///< its corrections, where it has been corrected by them
     std::optional<MeasuredDelay> ionosphere{};  ///< by two carriers, beside what the model says
 };
 

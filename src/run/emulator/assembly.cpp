@@ -40,8 +40,7 @@ ErrorModelSettings error_model_settings(const Scenario& scenario, const Simulati
     return settings;
 }
 
-Result<std::vector<std::unique_ptr<PropagationEffect>>> sensor_effects_of(const Scenario& scenario,
-                                                                          const SimulationSetup& setup) {
+Result<WorldParts> sensor_parts_of(const Scenario& scenario, const SimulationSetup& setup) {
     EffectSettings settings;
     settings.atmosphere = scenario.atmosphere;
     settings.link_budget = scenario.model.link;
@@ -56,7 +55,9 @@ Result<std::vector<std::unique_ptr<PropagationEffect>>> sensor_effects_of(const 
     }
     settings.tec_source_told_at = told_place(scenario, "atmosphere.tec_source", "atmosphere.tec_source");
     settings.run = span_of_tables(scenario, setup.start);
-    return effects_for(*scenario.model.sensor_model, settings);
+    auto effects = effects_for(*scenario.model.sensor_model, settings);
+    if (!effects) return fail(effects.error());
+    return WorldParts{std::move(*effects)};
 }
 
 bool city_acts(const Scenario& scenario) { return scenario.model.sensor_model || scenario.model.modern.errors; }
@@ -314,22 +315,16 @@ ReceiverSettings receiver_settings(const Scenario& scenario, const firmware::Boa
 }
 
 Result<Simulation> make_simulation(const Scenario& scenario, const SimulationSetup& setup) {
-    auto effects =
-        scenario.model.sensor_model
-            ? sensor_effects_of(scenario, setup)
-            : modern_effects_of(
-                  scenario, *setup.navigation,
-                  {setup.geoid, setup.start, setup.data, setup.gas_losses, setup.precise,
-                   setup.receiver < scenario.receivers.size() ? &scenario.receivers[setup.receiver] : nullptr});
-    if (!effects) return fail(effects.error());
+    auto world = scenario.model.sensor_model ? sensor_parts_of(scenario, setup) : modern_parts_of(scenario, setup);
+    if (!world) return fail(world.error());
     auto path = make_antenna_path(scenario, setup);
     const auto last_place = place_before_start(scenario, setup.receiver, path->at(setup.start));
     FixMaker fix_maker = scenario.model.sensor_model ? FixMaker(make_error_model(error_model_settings(scenario, setup)))
                                                      : FixMaker(measuring_receiver(scenario, setup, last_place));
-    const RayTracedScene* city = add_city(*effects, scenario, setup);
-    add_obstacles(*effects, setup);
-    return Simulation({std::move(path), setup.navigation, std::move(*effects), std::move(fix_maker), city, setup.osnma,
-                       setup.precise});
+    const RayTracedScene* city = add_city(world->effects, scenario, setup);
+    add_obstacles(world->effects, setup);
+    return Simulation({std::move(path), setup.navigation, std::move(world->effects), std::move(fix_maker), city,
+                       setup.osnma, setup.precise, std::move(world->sbas)});
 }
 
 std::vector<std::filesystem::path> board_folders(const DataFolders& data) {

@@ -8,6 +8,7 @@
 #include "detail/receiver_assembly.hpp"
 #include "receiver/error_model/model_effects.hpp"
 #include "world/rinex/ionex_file.hpp"
+#include "world/sbas/sbas_services.hpp"
 
 namespace skyloop::inline run {
 
@@ -112,12 +113,19 @@ Result<ModernWorld> modern_world_of(const Scenario& scenario, const NavigationSo
     return ModernWorld{std::move(settings.propagation), std::move(context)};
 }
 
-Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
-                                                                          const NavigationSource& navigation,
-                                                                          const WorldData& data) {
-    const auto world = modern_world_of(scenario, navigation, data);
+Result<WorldParts> modern_parts_of(const Scenario& scenario, const SimulationSetup& setup) {
+    const auto world =
+        modern_world_of(scenario, *setup.navigation,
+                        {setup.geoid, setup.start, setup.data, setup.gas_losses, setup.precise,
+                         setup.receiver < scenario.receivers.size() ? &scenario.receivers[setup.receiver] : nullptr});
     if (!world) return fail(world.error());
-    return modern_effects(world->parameters, world->context);
+    auto effects = modern_effects(world->parameters, world->context);
+    if (!effects) return fail(effects.error());
+    // The same place for all receivers of the run, whose satellites send the same.
+    const Geodetic place = make_trajectory(trajectory_of(scenario, 0), setup.start)->at(setup.start).geodetic;
+    auto sbas = sbas_services({setup.navigation, world->parameters, world->context, place});
+    if (!sbas) return fail(sbas.error());
+    return WorldParts{std::move(*effects), std::move(*sbas)};
 }
 
 MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup,

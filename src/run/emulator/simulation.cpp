@@ -1,26 +1,26 @@
 #include "run/emulator/simulation.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <tuple>
+#include <utility>
 
 #include "world/propagation/propagation_effect.hpp"
 
 namespace skyloop::inline run {
 namespace {
 
-void make_fix(ErrorModel& model, Trace& trace) {
+void make_modelled_fix(ErrorModel& model, Trace& trace) {
     trace.epoch.fix = model.fix(trace.truth, trace.sky, trace.arrivals);
     trace.error_scale = model.last_scale();
 }
 
-void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings, ActiveFaults* faults) {
-    const Arrivals nothing;
-    const Arrivals& heard = settings.navigating ? trace.arrivals : nothing;
-    Measurement measured = receiver.measurement.measure(heard, trace.truth.time, settings);
-    trace.measurement = std::move(measured.terms);
-    trace.epoch.observations = std::move(measured.observations);
-    if (faults != nullptr) faults->edit_observations(trace);
-    trace.epoch.fix = receiver.navigation.solve(trace.epoch.observations, settings);
-    trace.epoch.relative = receiver.navigation.relative();
+// Both ascend by time, then satellite.
+std::vector<Subframe> joined(std::vector<Subframe> subframes, std::vector<Subframe> messages) {
+    const auto key = [](const Subframe& s) { return std::tuple(s.end, s.satellite, s.signal); };
+    std::vector<Subframe> all;
+    std::ranges::merge(std::move(subframes), std::move(messages), std::back_inserter(all), {}, key, key);
+    return all;
 }
 
 // Of a receiver that is stopped: not even dead reckoning.
@@ -47,6 +47,25 @@ Simulation::Simulation(Parts parts) : parts_(std::move(parts)), observer_(parts_
     if (parts_.osnma) subframes_.authenticate(parts_.osnma);
 }
 
+void Simulation::make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings,
+                          ActiveFaults* faults) {
+    const Arrivals nothing;
+    const Arrivals& heard = settings.navigating ? trace.arrivals : nothing;
+    Epoch& epoch = trace.epoch;
+    Measurement measured = receiver.measurement.measure(heard, trace.truth.time, settings);
+    trace.measurement = std::move(measured.terms);
+    epoch.observations = std::move(measured.observations);
+    if (faults != nullptr) faults->edit_observations(trace);
+    std::vector<Subframe> messages;
+    if (parts_.sbas) messages = sbas_reception_.receive(epoch.observations, *parts_.sbas, trace.truth.time);
+    receiver.navigation.hear(messages, settings);
+    epoch.fix = receiver.navigation.solve(epoch.observations, settings);
+    epoch.relative = receiver.navigation.relative();
+    if (settings.subframes)
+        epoch.subframes =
+            joined(subframes_.receive(epoch.observations, *parts_.navigation, trace.truth.time), std::move(messages));
+}
+
 SkyView Simulation::view(const TruthState& truth) const {
     return observe_sky(truth, *parts_.navigation, parts_.precise.get());
 }
@@ -65,9 +84,7 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaul
     if (auto* receiver = std::get_if<MeasuringReceiver>(&parts_.fix_maker))
         make_fix(*receiver, trace, settings, faults);
     else
-        make_fix(*std::get<std::unique_ptr<ErrorModel>>(parts_.fix_maker), trace);
-    if (measures() && settings.subframes)
-        trace.epoch.subframes = subframes_.receive(trace.epoch.observations, *parts_.navigation, time);
+        make_modelled_fix(*std::get<std::unique_ptr<ErrorModel>>(parts_.fix_maker), trace);
     if (!settings.navigating) withhold(trace.epoch.fix);
     trace.epoch.front_end = front;
     if (faults != nullptr) faults->edit_epoch(trace);

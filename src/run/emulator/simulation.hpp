@@ -9,12 +9,14 @@
 #include "motion/trajectory/trajectory.hpp"
 #include "receiver/error_model/error_model.hpp"
 #include "receiver/measurement/measurement_engine.hpp"
+#include "receiver/measurement/sbas_reception.hpp"
 #include "receiver/measurement/subframe_reception.hpp"
 #include "receiver/pvt/navigation_engine.hpp"
 #include "run/fault/active_faults.hpp"
 #include "world/flow/receiver_settings.hpp"
 #include "world/flow/trace.hpp"
 #include "world/gnss/ephemeris.hpp"
+#include "world/gnss/sbas_message.hpp"
 #include "world/propagation/propagation_effect.hpp"
 #include "world/propagation/ray_traced_scene.hpp"
 #include "world/sky/observe_sky.hpp"
@@ -41,6 +43,7 @@ public:
         const RayTracedScene* city = nullptr;           ///< one of the effects; null: nothing stands around
         std::shared_ptr<const OsnmaKeys> osnma{};       ///< of Galileo's pages; null: they are not authenticated
         std::shared_ptr<const PreciseTruth> precise{};  ///< where the satellites are; null: where their records say
+        std::unique_ptr<SbasSource> sbas{};             ///< what SBAS satellites send; null: nothing
     };
     explicit Simulation(Parts parts);
 
@@ -67,9 +70,12 @@ public:
     [[nodiscard]] bool measures() const { return std::holds_alternative<MeasuringReceiver>(parts_.fix_maker); }
 
 private:
+    void make_fix(MeasuringReceiver& receiver, Trace& trace, const ReceiverSettings& settings, ActiveFaults* faults);
+
     Parts parts_;
     SkyObserver observer_;
     SubframeReception subframes_;
+    SbasReception sbas_reception_;
 };
 
 }  // namespace skyloop::inline run

@@ -72,6 +72,13 @@ struct VelocityNed {
     double north = 0, east = 0, down = 0;
 };
 
+/// What an SBAS satellite has told of another one, as it was applied.
+struct AppliedSbas {
+    int udre_index = 0;       ///< of the bound of its error, 0 … 13
+    Metres range_correction;  ///< fast, added to the pseudorange
+    Metres ionosphere;        ///< slant, taken off it
+};
+
 /// One satellite as the receiver reports it.
 struct SatelliteStatus {
     SatelliteId id;
@@ -82,6 +89,7 @@ struct SatelliteStatus {
     bool has_ephemeris = true;         ///< the receiver has a record of its orbit
     bool healthy = true;               ///< by that record, and by what it sends now
     std::optional<Metres> residual{};  ///< of the pseudorange after the solution
+    std::optional<AppliedSbas> sbas{};
 };
 
 /// A position, velocity and time solution. Without a fix only `time`, `leap_seconds` and `satellites` mean something.
@@ -104,7 +112,8 @@ struct Fix {
     Metres clock_bias;                              ///< receiver clock − GPST as solved
     MetresPerSecond clock_drift;                    ///< of it
     std::vector<SatelliteStatus> satellites;        ///< all that the receiver knows of, ascending
-    bool withheld = false;  ///< no fix, as what was solved lies beyond the dynamic model's limits
+    bool withheld = false;                     ///< no fix, as what was solved lies beyond the dynamic model's limits
+    std::optional<SatelliteId> sbas_source{};  ///< whose corrections are in the solution
 
     [[nodiscard]] bool has_position() const { return type != FixType::none && type != FixType::time_only; }
     [[nodiscard]] int satellites_used() const {

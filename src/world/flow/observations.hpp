@@ -31,8 +31,7 @@ struct Observation {
     Hertz doppler_deviation;
     /// How skew the peak of correlation is, by wide correlators: 0 of a clean signal; nothing where it is not measured.
     std::optional<double> correlation_distortion{};
-    std::optional<Metres> augmentation{};  ///< what an SBAS system would say is to be taken off the pseudorange
-    bool called_unhealthy = false;         ///< the satellite sends just now that it is not to be used
+    bool called_unhealthy = false;  ///< the satellite sends just now that it is not to be used
 };
 
 /// All signals that are tracked at one instant, ascending by satellite, then signal. The same instant for all of them.

@@ -82,6 +82,7 @@ struct ReceiverSettings {
     std::uint64_t sbas_scan_mask = 0;  ///< of in_sbas_scan_mask()
     bool sbas_ranging = true;          ///< SBAS satellites are used as those of other systems
     bool sbas_corrections = true;      ///< what SBAS satellites say of others is used
+    bool sbas_test_mode = false;       ///< of those, too, that say that they are tested
     bool beidou_b1c = false;           ///< BeiDou's first signal is B1C, of BeiDou-3's MEO and IGSO satellites alone
     std::size_t most_satellites = 0;   ///< that a solution takes, the strongest; 0: all
     Angle elevation_mask = Angle::degrees(5);

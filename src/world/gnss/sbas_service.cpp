@@ -15,15 +15,17 @@ std::optional<SbasSystem> sbas_system(int prn) {
     return std::nullopt;
 }
 
-bool serves(SbasSystem system, const Geodetic& place) {
-    struct Box {
-        double south, north, west, east;  // degrees
-    };
-    static constexpr std::array<Box, 4> boxes{
-        {{15, 72, -170, -50}, {20, 72, -40, 45}, {20, 50, 120, 150}, {0, 40, 60, 100}}};
-    const Box& box = boxes.at(static_cast<std::size_t>(system));
+bool SbasServiceArea::holds(const Geodetic& place) const {
     const double latitude = place.latitude.deg(), longitude = place.longitude.deg();
-    return latitude >= box.south && latitude <= box.north && longitude >= box.west && longitude <= box.east;
+    return latitude >= south && latitude <= north && longitude >= west && longitude <= east;
 }
+
+SbasServiceArea sbas_service_area(SbasSystem system) {
+    static constexpr std::array<SbasServiceArea, 4> areas{
+        {{15, 72, -170, -50}, {20, 72, -40, 45}, {20, 50, 120, 150}, {0, 40, 60, 100}}};
+    return areas.at(static_cast<std::size_t>(system));
+}
+
+bool sbas_under_test(int prn) { return prn == 126; }
 
 }  // namespace skyloop::inline world

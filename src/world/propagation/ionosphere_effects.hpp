@@ -59,6 +59,8 @@ struct ResidualReach {
     bool galileo = false;
     bool others = false;
 };
+/// By the parameters' choice, and by what the receivers correct with.
+ResidualReach residual_reach(const IonosphereParameters& parameters, const ModernContext& context);
 
 /// Writes the ionospheric delay of each arrival at the carrier of its first signal: that of the model, the residual's
 /// share of it, and what travels through the ionosphere, wherever the model has one. The residual's factor scales both.

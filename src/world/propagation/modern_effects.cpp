@@ -34,14 +34,17 @@ void add_precise(std::vector<std::unique_ptr<PropagationEffect>>& effects,
 
 }  // namespace
 
+ResidualReach residual_reach(const IonosphereParameters& parameters, const ModernContext& context) {
+    const auto galileo = context.galileo_correction ? context.galileo_correction : context.receiver_correction;
+    return {residual_wanted(parameters, galileo), residual_wanted(parameters, context.receiver_correction)};
+}
+
 Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects(const ModernPropagationParameters& parameters,
                                                                        const ModernContext& context) {
     auto truth = make_ionosphere_truth(parameters.ionosphere_model, context);
     if (!truth) return fail(truth.error());
     const AtmosphereParameters& air = context.atmosphere;
-    const auto galileo = context.galileo_correction ? context.galileo_correction : context.receiver_correction;
-    const ResidualReach residual{residual_wanted(parameters.ionosphere_model, galileo),
-                                 residual_wanted(parameters.ionosphere_model, context.receiver_correction)};
+    const ResidualReach residual = residual_reach(parameters.ionosphere_model, context);
     const TroposphereDelay::Site site{context.geoid, context.leap_seconds};
 
     std::vector<std::unique_ptr<PropagationEffect>> effects;

@@ -158,6 +158,31 @@ TEST(NavSbasMessage, NamesTheStrongestSatellite) {
     EXPECT_EQ(m.satellites.size(), 10u);
 }
 
+TEST(NavSbasMessage, TellsOfTheSatellitesThatAreCorrected) {
+    UbxReport m9(9);
+    Fix& fix = m9.state.epoch.fix;
+    add_satellites(fix, Constellation::sbas, 23, 3);
+    fix.type = FixType::dgnss;
+    fix.sbas_source = {Constellation::sbas, 23};
+    fix.satellites[0].sbas = AppliedSbas{4, Metres(-1.25), Metres(3.5)};
+    const auto m = m9.report<NavSbas>();
+    EXPECT_EQ(m.geo, 123);
+    ASSERT_EQ(m.satellites.size(), 1u);
+    EXPECT_EQ(m.satellites[0].sv_id, sv_id(fix.satellites[0].id));
+    EXPECT_EQ(m.satellites[0].udre, 4);
+    EXPECT_EQ(m.satellites[0].prc.raw, -125);
+    EXPECT_EQ(m.satellites[0].ic.raw, 350);
+    // Of NAV-SAT and NAV-SIG that one alone has corrections, too.
+    const auto list = m9.report<NavSat>().satellites;
+    EXPECT_EQ(list[0].flags & 0x10040, 0x10040u);
+    EXPECT_EQ(list[1].flags & 0x10040, 0u);
+    const auto signals = m9.report<NavSig>().signals;
+    EXPECT_EQ(signals[0].corr_source, 1);
+    EXPECT_EQ(signals[0].iono_model, 2);
+    EXPECT_EQ(signals[1].corr_source, 0);
+    EXPECT_EQ(signals[1].iono_model, 2) << "the grid is for all";
+}
+
 TEST(NavSigMessage, ComesFromTheSatellitesOfAModelThatMeasuresNothing) {
     UbxReport m9(9);
     const auto m = m9.report<NavSig>();

@@ -1,6 +1,8 @@
 // SBF blocks of measurements and of navigation messages, read back as a decoder does.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -13,6 +15,7 @@
 #include "sample_epochs.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 #include "world/gnss/constants.hpp"
+#include "world/gnss/sbas_message.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -144,6 +147,21 @@ TEST(SbfMeasurements, CountsLossesAndJumpsOfTheClock) {
     EXPECT_EQ(extra.signals[0].carrier_variance, 100) << "0.01 cycles";
     EXPECT_NEAR(static_cast<double>(extra.doppler_var_factor), 4, 1e-6);
     EXPECT_NEAR((extra.signals[0].misc & 7) * 0.03125, 0.1, 0.032) << "44.35 is 44.25 and a tenth";
+}
+
+TEST(SbfNavigation, MessagesOfSbasAreGivenAsTheyCame) {
+    NavigationState state = measuring_state();
+    const GpsTime end = state.epoch.fix.time;
+    const SbasWords words = encode_sbas(SbasPrnMask{{1, 7, 32}, 1}, end - std::chrono::seconds(1));
+    state.epoch.subframes = {{{Constellation::sbas, 36}, Signal::l1, end, 0, {words.begin(), words.end()}}};
+    const auto blocks = sbf_raw_pages(SbfGeoRawL1::block_number, state);
+    ASSERT_EQ(blocks.size(), 1u);
+    const auto page = decode_sbf<SbfGeoRawL1>(parse_sbf(blocks[0])->body);
+    ASSERT_TRUE(page);
+    EXPECT_EQ(page->svid, 136);
+    EXPECT_EQ(page->source, 24);
+    EXPECT_TRUE(std::ranges::equal(page->words, words));
+    EXPECT_TRUE(sbf_raw_pages(SbfGpsRawCa::block_number, state).empty());
 }
 
 TEST(SbfNavigation, WordsOfASubframeAreUprightWithTheirParity) {

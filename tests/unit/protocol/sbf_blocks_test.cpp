@@ -26,6 +26,7 @@ TEST(SbfBlocks, HaveTheLengthsOfTheReferenceGuide) {
     EXPECT_EQ(encode_sbf(SbfGpsRawCa{}).size(), 60u);
     EXPECT_EQ(encode_sbf(SbfGloRawCa{}).size(), 32u);
     EXPECT_EQ(encode_sbf(SbfGalRawInav{}).size(), 52u);
+    EXPECT_EQ(encode_sbf(SbfGeoRawL1{}).size(), 52u);
     EXPECT_EQ(encode_sbf(SbfBdsRaw{}).size(), 60u);
     EXPECT_EQ(encode_sbf(SbfGpsNav{}).size(), 140u);
     EXPECT_EQ(encode_sbf(SbfBdsNav{}).size(), 140u);

@@ -57,6 +57,7 @@ ReceiverSettings settings_of(const ConfigStore& store, const BoardProfile& board
     settings.sbas_scan_mask = store.value(key::sbas_scan_mask);
     settings.sbas_ranging = store.flag(legacy_key::sbas_ranging);
     settings.sbas_corrections = store.flag(legacy_key::sbas_corrections);
+    settings.sbas_test_mode = store.flag(legacy_key::sbas_test_mode);
     settings.beidou_b1c = takes_b1c(store);
     if (is_changed(store, key::navspg_min_elev))
         settings.elevation_mask = Angle::degrees(static_cast<double>(store.signed_value(key::navspg_min_elev)));

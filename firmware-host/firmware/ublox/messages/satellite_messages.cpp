@@ -17,6 +17,13 @@ bool has_almanac(const SatelliteStatus& s, const NavigationState& state) {
     return s.id.constellation != Constellation::sbas && almanac_known(state);
 }
 
+// SBAS corrects some of the satellites. Sensor models, whose regime of SBAS has no messages, say it of all.
+CorrectionOrigin corrections_of(const SatelliteStatus& s, const NavigationState& state) {
+    const CorrectionOrigin origin = corrections_in_use(state);
+    if (origin != CorrectionOrigin::sbas || !state.epoch.fix.sbas_source || s.sbas) return origin;
+    return CorrectionOrigin::none;
+}
+
 // orbitSource: 0 none, 1 ephemeris, 2 almanac.
 std::uint32_t orbit_source(const SatelliteStatus& s, const NavigationState& state) {
     if (s.has_ephemeris) return 1;
@@ -29,7 +36,7 @@ std::uint32_t satellite_flags(const SatelliteStatus& s, const ReportContext& con
                           orbit_source(s, state) << 8 | (s.has_ephemeris ? 1u << 11 : 0u) |
                           (has_almanac(s, state) ? 1u << 12 : 0u);
     if (!s.used) return flags;
-    switch (corrections_in_use(state)) {
+    switch (corrections_of(s, state)) {
         case CorrectionOrigin::none:
             break;
         case CorrectionOrigin::sbas:
@@ -57,7 +64,7 @@ NavSat satellites_in_view(const ReportContext& context) {
 // Bits: 0 used, 1 corrected, 2 orbit known, 3 by ephemeris, 4 unhealthy, 5 by almanac.
 std::uint8_t channel_flags(const SatelliteStatus& s, const NavigationState& state) {
     const std::uint32_t source = orbit_source(s, state);
-    const bool corrected = s.used && corrections_in_use(state) != CorrectionOrigin::none;
+    const bool corrected = s.used && corrections_of(s, state) != CorrectionOrigin::none;
     return static_cast<std::uint8_t>((s.used ? 1 : 0) | (corrected ? 2 : 0) | (source != 0 ? 4 : 0) |
                                      (source == 1 ? 8 : 0) | (satellite_health(s, state) == 2 ? 0x10 : 0) |
                                      (source == 2 ? 0x20 : 0));
@@ -106,7 +113,8 @@ NavOrb orbits(const ReportContext& context) {
     return m;
 }
 
-// With corrections of SBAS in use, the strongest of its satellites is the one that they come from.
+// The satellite whose corrections are used, or the strongest one. Of each corrected satellite with the index of its
+// bound (UDREI), and what was added for it and taken off.
 NavSbas augmentation(const ReportContext& context) {
     const NavigationState& state = context.state;
     auto m = stamped<NavSbas>(context);
@@ -115,6 +123,8 @@ NavSbas augmentation(const ReportContext& context) {
     for (const SatelliteStatus& s : satellites)
         if (s.id.constellation == Constellation::sbas && s.cn0 && (source == nullptr || *s.cn0 > *source->cn0))
             source = &s;
+    for (const SatelliteStatus& s : satellites)
+        if (state.epoch.fix.sbas_source == s.id) source = &s;
     m.sys = -1;  // unknown
     if (source == nullptr) return m;
     m.geo = sv_id(source->id);
@@ -124,10 +134,15 @@ NavSbas augmentation(const ReportContext& context) {
     m.service = corrects ? 3 : 1;
     for (const SatelliteStatus& s : satellites) {
         const auto number = ubx_single_number(s.id);
-        if (!corrects || !s.used || !number) continue;
+        if (!corrects || !s.used || !number || corrections_of(s, state) == CorrectionOrigin::none) continue;
         NavSbasItem item;
         item.sv_id = *number;
         item.flags = 1;
+        if (s.sbas) {
+            item.udre = static_cast<std::uint8_t>(s.sbas->udre_index);
+            item.prc.set(s.sbas->range_correction.value());
+            item.ic.set(s.sbas->ionosphere.value());
+        }
         item.sv_sys = static_cast<std::uint8_t>(m.sys);
         item.sv_service = m.service;
         m.satellites.push_back(item);
@@ -201,7 +216,7 @@ std::uint16_t signal_flags(const SignalReport& signal, const NavigationState& st
     const bool range = signal.observation == nullptr || signal.observation->pseudorange.has_value();
     if (!signal.is_used() || !range) return static_cast<std::uint16_t>(flags);
     flags |= 0x28;
-    switch (corrections_in_use(state)) {
+    switch (corrections_of(*signal.satellite, state)) {
         case CorrectionOrigin::none:
             break;
         case CorrectionOrigin::sbas:
@@ -218,12 +233,13 @@ std::uint16_t signal_flags(const SignalReport& signal, const NavigationState& st
 std::uint8_t correction_source(const SignalReport& signal, const NavigationState& state) {
     if (!signal.is_used()) return 0;
     constexpr std::uint8_t codes[] = {0, 1, 4};
-    return codes[static_cast<std::size_t>(corrections_in_use(state))];
+    return codes[static_cast<std::size_t>(corrections_of(*signal.satellite, state))];
 }
 
 // 0 none, 1 Klobuchar of GPS, which comes in the page of the leap seconds, 2 SBAS, 8 two frequencies.
 std::uint8_t ionosphere_model(const SignalReport& signal, const NavigationState& state) {
     if (!signal.is_used()) return 0;
+    // The grid serves for satellites of every system.
     switch (corrections_in_use(state)) {
         case CorrectionOrigin::sbas:
             return 2;

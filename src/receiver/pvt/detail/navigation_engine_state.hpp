@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/geo/local_frame.hpp"
+#include "receiver/pvt/augmentation.hpp"
 #include "receiver/pvt/baseline_solver.hpp"
 #include "receiver/pvt/equation_maker.hpp"
 #include "receiver/pvt/expected_error.hpp"
@@ -32,6 +33,9 @@ public:
     State(const NavigationParameters& parameters, const NavigationKnowledge& knowledge);
 
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
+    void hear(std::span<const Subframe> messages, const ReceiverSettings& settings) {
+        augmentation_.hear(messages, settings);
+    }
     std::optional<RelativePosition> relate(const Observations& observations, const ReferenceStation& base);
     [[nodiscard]] bool velocity_known() const { return velocity_known_; }
     [[nodiscard]] std::optional<FixType> pair_type() const { return pair_.type_at(time_); }
@@ -54,6 +58,7 @@ private:
     void solve_doppler(EpochSolution& epoch) const;
     [[nodiscard]] bool plausible(const FilteredPosition& filtered, const ReceiverSettings& settings);
     [[nodiscard]] FixType type_of(const EpochSolution& epoch) const;
+    [[nodiscard]] bool is_augmented(const EpochSolution& epoch) const;
     void fill_solved(const EpochSolution& epoch, const ReceiverSettings& settings, Fix& fix);
     void fill_motion(const FilteredPosition& filtered, const ReceiverSettings& settings, Fix& fix);
     Metres fill_accuracy(const EpochSolution& epoch, Fix& fix);
@@ -81,6 +86,7 @@ private:
     CodeSmoother smoother_;
     PositionFilter filter_;
     SatelliteReport report_;
+    Augmentation augmentation_;
     EquationMaker maker_;
     MotionCheck motion_;
     NoiseScale noise_;

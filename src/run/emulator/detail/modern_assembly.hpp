@@ -11,6 +11,7 @@
 #include "base/core/result.hpp"
 #include "run/emulator/assembly.hpp"
 #include "run/scenario/scenario.hpp"
+#include "world/gnss/sbas_message.hpp"
 #include "world/propagation/modern_effects.hpp"
 #include "world/propagation/named_ionosphere_maps.hpp"
 
@@ -47,11 +48,14 @@ struct ModernWorld {
 /// That of a scenario. Fails with `input` when the maps that it needs are missing, or the calibration of the antenna.
 Result<ModernWorld> modern_world_of(const Scenario& scenario, const NavigationSource& navigation,
                                     const WorldData& world);
-/// The effects of the modern profile, from a scenario's settings. Fails with `input` when a file they need is missing
-/// or does not fit the run.
-Result<std::vector<std::unique_ptr<PropagationEffect>>> modern_effects_of(const Scenario& scenario,
-                                                                          const NavigationSource& navigation,
-                                                                          const WorldData& world);
+/// What comes between the satellites and an antenna, and what SBAS satellites say of it; null: nothing.
+struct WorldParts {
+    std::vector<std::unique_ptr<PropagationEffect>> effects;
+    std::unique_ptr<SbasSource> sbas{};
+};
+/// Those of the modern profile, from a scenario's settings. Fails with `input` when a file they need is missing or does
+/// not fit the run.
+Result<WorldParts> modern_parts_of(const Scenario& scenario, const SimulationSetup& setup);
 
 /// The receiver's own part. Navigation and geoid outlive it. @param last_place of place_before_start()
 MeasuringReceiver measuring_receiver(const Scenario& scenario, const SimulationSetup& setup,
