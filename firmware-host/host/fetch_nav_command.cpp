@@ -81,18 +81,22 @@ std::string host_of(const std::string& address) {
 class Failures {
 public:
     void add(const std::string& address, const FetchAnswer& answer) {
-        all_unreachable_ = all_unreachable_ && answer.outcome == FetchOutcome::unreachable;
-        hosts_.insert(host_of(address));
+        if (answer.outcome == FetchOutcome::unreachable)
+            unreachable_.insert(host_of(address));
+        else
+            all_unreachable_ = false;
         add(address + ": " + answer.problem);
     }
     void add_useless(std::string sentence) {
         all_unreachable_ = false;
         add(std::move(sentence));
     }
+    // Who was asked in vain once.
+    [[nodiscard]] bool has_unreachable(const std::string& host) const { return unreachable_.contains(host); }
     [[nodiscard]] Error told(GpsTime day) const {
         if (all_unreachable_)
-            return {ErrorCode::outside,
-                    fmt::format("no network: {} cannot be reached ({})", fmt::join(hosts_, ", "), sentences_.back())};
+            return {ErrorCode::outside, fmt::format("no network: {} cannot be reached ({})",
+                                                    fmt::join(unreachable_, ", "), sentences_.back())};
         return {ErrorCode::outside,
                 fmt::format("no navigation file of {}: {}", day_text(day), fmt::join(sentences_, "; "))};
     }
@@ -100,7 +104,7 @@ public:
 private:
     void add(std::string sentence) { sentences_.push_back(std::move(sentence)); }
     bool all_unreachable_ = true;
-    std::set<std::string> hosts_;
+    std::set<std::string> unreachable_;  // hosts
     std::vector<std::string> sentences_;
 };
 
@@ -125,6 +129,7 @@ Result<CheckedFile> file_of_mirrors(const std::vector<NavigationMirror>& mirrors
     for (const NavigationMirror& mirror : mirrors)
         for (const std::string& pattern : mirror.addresses) {
             const std::string address = address_of_day(pattern, day);
+            if (failures.has_unreachable(host_of(address))) continue;
             messages.detail(address);
             if (auto file = fetched_file(address, day, failures)) return std::move(*file);
         }

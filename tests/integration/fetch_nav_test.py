@@ -206,7 +206,7 @@ class FetchNav(WithServer):
         with socket.socket() as closed:
             closed.bind(("127.0.0.1", 0))  # and does not listen
             nobody = f"http://127.0.0.1:{closed.getsockname()[1]}/{{year}}{{doy}}.gz"
-            told = self.refused("--mirror", nobody, "--mirror", "http://nowhere.invalid/{doy}.gz")
+            told = self.refused("--mirror", nobody, "--mirror", "http://nowhere.invalid/{doy}.gz", "--mirror", nobody + "/again")
         self.assertRegex(told, r"^skyloop: no network: 127\.0\.0\.1:\d+, nowhere\.invalid cannot be reached \(.*nowhere\.invalid.*\)\n$")
 
     @unittest.skipUnless(shutil.which("openssl"), "openssl is not installed")
@@ -327,6 +327,13 @@ class NavAuto(WithServer):
         self.assertIn('sky.navigation: has files beside "auto"; expected either', skyloop("check", scenario, check=False, env=self.env).stderr)
         refused = skyloop("check", "--nav", "auto", "--rebase-nav", check=False, env=self.env)
         self.assertIn('"auto" takes those of the run\'s own day', refused.stderr)
+
+    def test_a_campaign_names_its_file(self):
+        scenario = self.folder / "many.toml"
+        scenario.write_text('[sky]\nnavigation = "auto"\n[run]\nstart = 2024-03-05T12:00:00Z\nduration_s = 2\n', encoding="utf-8")
+        done = skyloop("campaign", "plan", scenario, "--seeds", "1-2", check=False, env=self.env)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('many.toml:2:14: sky.navigation: "auto" is what the cache of a machine holds; expected the path', done.stderr)
 
     def test_solve(self):
         skyloop("simulate", "--nav", self.cached, "--start", "2024-03-05T12:00:00Z", "--duration", 5, "--out", self.folder / "seen")

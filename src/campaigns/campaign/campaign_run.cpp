@@ -186,6 +186,11 @@ Result<Scenario> campaign_scenario(const Scenario& asked) {
         return fail(ErrorCode::usage, fmt::format("{}: the run would begin now, each at another time; expected "
                                                   "run.start, or navigation data that is not moved",
                                                   scenario.name));
+    if (scenario.sky.automatic_navigation)
+        return fail(ErrorCode::usage,
+                    told_place(scenario, "sky.navigation", scenario.name) +
+                        "\"auto\" is what the cache of a machine holds; expected the path of the file, "
+                        "which skyloop fetch-nav prints");
     if (!scenario.run.duration && !ends_with_its_path(scenario))
         return fail(ErrorCode::usage, fmt::format("{}: the run has no end; expected run.duration_s, or a trajectory "
                                                   "with end = \"stop\"",
