@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "navigation_text.hpp"
 #include "base/time/utc_time.hpp"
+#include "navigation_text.hpp"
 #include "support/oracle_table.hpp"
 #include "world/gnss/navigation_data.hpp"
 #include "world/gnss/orbit.hpp"
@@ -62,10 +62,10 @@ TEST(ModernRecords, FilesWithoutLegacyMessagesServeOrbits) {
     const std::string gps = number_lines({{-3, 0, 9.999e9, 5}, {0, 0, 0, 0}, {0, 0, 0, 0}, {180000, 2304, 0, 0}});
     const std::string beidou = number_lines({{0, 0, 0, 0}, {1e-9, 0, 2e-9, 3e-9}, {15, 1, 0, 97}, {180000, 0, 0, 98}});
     const std::string third = number_lines({{0, 0, 0, 0}, {15, 0, 0, 2e-9}, {180000, 0, 0, 0}});
-    const auto file = read_navigation(test::header_v3("4.00") + "> EPH G04 CNV2\nG04" + epoch + body + gps +
-                                          "> EPH C25 CNV1\nC25" + epoch + body + beidou + "> EPH C26 CNV3\nC26" +
-                                          epoch + body + third,
-                                      "made.nav");
+    const auto file =
+        read_navigation(test::header_v3("4.00") + "> EPH G04 CNV2\nG04" + epoch + body + gps + "> EPH C25 CNV1\nC25" +
+                            epoch + body + beidou + "> EPH C26 CNV3\nC26" + epoch + body + third,
+                        "made.nav");
     ASSERT_TRUE(file) << file.error().message;
     EXPECT_THAT(file->warnings, testing::IsEmpty());
     ASSERT_EQ(file->records.size(), 3u);
