@@ -20,42 +20,39 @@ struct AlmanacEntry {
     std::optional<KeplerEphemeris> record;
 
     void number(BitWriter& bits) const { bits.put_signed(record ? record->satellite.number : 0, 6); }
-    void filling(BitWriter& bits, int width) const {
+    // @param place of the field's first bit behind the number; those that are even are 0
+    static void filling(BitWriter& bits, int width, int place) {
         for (int i = 0; i < width; ++i)
-            bits.put(bits.size() % 2, 1);
+            bits.put_signed((place + i) % 2, 1);
     }
     void axis(BitWriter& bits) const {
-        if (!record) return filling(bits, 13);
+        if (!record) return filling(bits, 13, 0);
         put_scaled(bits, record->sqrt_a - std::sqrt(nominal_axis_m), 13, power_of_two(-9));
     }
     void eccentricity(BitWriter& bits) const {
-        if (!record) return filling(bits, 11);
+        if (!record) return filling(bits, 11, 13);
         put_scaled_unsigned(bits, record->e, 11, power_of_two(-16));
     }
-    void perigee(BitWriter& bits) const { circle(bits, record ? record->omega : 0); }
+    void perigee(BitWriter& bits) const { record ? put_circle(bits, record->omega, 16) : filling(bits, 16, 24); }
     void inclination(BitWriter& bits) const {
-        if (!record) return filling(bits, 11);
+        if (!record) return filling(bits, 11, 40);
         put_semicircles(bits, record->i0 - nominal_inclination, 11, -14);
     }
-    void node(BitWriter& bits) const { circle(bits, record ? record->omega0 : 0); }
+    void node(BitWriter& bits) const { record ? put_circle(bits, record->omega0, 16) : filling(bits, 16, 51); }
     void node_rate(BitWriter& bits) const {
-        if (!record) return filling(bits, 11);
+        if (!record) return filling(bits, 11, 67);
         put_semicircles(bits, record->omega_dot, 11, -33);
     }
-    void anomaly(BitWriter& bits) const { circle(bits, record ? record->m0 : 0); }
+    void anomaly(BitWriter& bits) const { record ? put_circle(bits, record->m0, 16) : filling(bits, 16, 78); }
     void clock(BitWriter& bits) const {
-        if (!record) return filling(bits, 16 + 13);
+        if (!record) return filling(bits, 16 + 13, 94);
         put_scaled(bits, record->af0, 16, power_of_two(-19));
         put_scaled(bits, record->af1, 13, power_of_two(-38));
     }
     // Of a signal by the place of its two bits of health in a record (RINEX 3.05, table A8).
     void health(BitWriter& bits, int first) const {
-        if (!record) return filling(bits, 2);
+        if (!record) return filling(bits, 2, 123);
         bits.put(static_cast<std::uint64_t>(record->health) >> first & 3, 2);
-    }
-    void circle(BitWriter& bits, double radians) const {
-        if (!record) return filling(bits, 16);
-        put_circle(bits, radians, 16);
     }
 };
 

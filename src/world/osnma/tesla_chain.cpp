@@ -18,13 +18,17 @@ TeslaChain::TeslaChain(std::uint64_t seed, GpsTime first) : first_(first), keys_
     for (std::size_t i = 0; i < 6; ++i)
         alpha_ = alpha_ << 8 | salt[i];
     std::copy_n(last.begin(), keys_.back().size(), keys_.back().begin());
+    // Key, time and α; plain bytes, since there are many of them.
+    std::array<std::uint8_t, 16 + 4 + 6> message{};
+    const auto put = [&message](std::size_t at, std::size_t count, std::uint64_t value) {
+        for (std::size_t i = count; i-- > 0; value >>= 8)
+            message[at + i] = static_cast<std::uint8_t>(value);
+    };
+    put(20, 6, alpha_);
     for (std::size_t i = keys_.size() - 1; i > 0; --i) {
-        BitWriter message;
-        for (const std::uint8_t byte : keys_[i])
-            message.put(byte, 8);
-        message.put(osnma_time(first + (static_cast<std::int64_t>(i) - 2) * osnma_subframe), 32);
-        message.put(alpha_, 48);
-        const Sha256Digest digest = sha256_of(message.bytes());
+        std::copy(keys_[i].begin(), keys_[i].end(), message.begin());
+        put(16, 4, osnma_time(first + (static_cast<std::int64_t>(i) - 2) * osnma_subframe));
+        const Sha256Digest digest = sha256_of(message);
         std::copy_n(digest.begin(), keys_[i - 1].size(), keys_[i - 1].begin());
     }
 }
