@@ -32,15 +32,22 @@ Result<void> check_use(const Scenario& scenario) {
     return {};
 }
 
+// A file that a key names and that cannot be opened is the key's mistake.
+Error at_files_key(const Scenario& scenario, std::string_view key, Error error) {
+    const auto place = scenario.told_at.find(key);
+    if (error.code != ErrorCode::outside || place == scenario.told_at.end()) return error;
+    return {ErrorCode::input, place->second + error.message};
+}
+
 // The tables of all files of a kind in one; nothing where there are no files.
-template <class Table, class Read, class Add>
-Result<std::optional<Table>> read_tables(const std::vector<std::filesystem::path>& paths, Read read, Add add) {
+template <class Table, class Read>
+Result<std::optional<Table>> read_tables(const std::vector<std::filesystem::path>& paths, Read read) {
     std::optional<Table> all;
     for (const auto& path : paths) {
         Result<Table> table = read(path);
         if (!table) return fail(table.error());
         if (all)
-            add(*all, std::move(*table));
+            all->add(*table);
         else
             all = std::move(*table);
     }
@@ -53,18 +60,18 @@ Result<PreciseOrbits> read_orbits(const std::filesystem::path& path) {
     return std::move(file->orbits);
 }
 
-Result<PreciseTruth> read_products(const PreciseFiles& files) {
-    const auto join = [](auto& all, auto&& more) { all.add(more); };
-    auto orbits = read_tables<PreciseOrbits>(files.orbits, read_orbits, join);
-    if (!orbits) return fail(orbits.error());
-    auto clocks = read_tables<PreciseClocks>(files.clocks, read_clock_file, join);
-    if (!clocks) return fail(clocks.error());
-    auto biases = read_tables<CodeBiases>(files.biases, read_bias_file, join);
-    if (!biases) return fail(biases.error());
+Result<PreciseTruth> read_products(const Scenario& scenario) {
+    const PreciseFiles& files = scenario.sky.precise;
+    auto orbits = read_tables<PreciseOrbits>(files.orbits, read_orbits);
+    if (!orbits) return fail(at_files_key(scenario, "sky.orbits", orbits.error()));
+    auto clocks = read_tables<PreciseClocks>(files.clocks, read_clock_file);
+    if (!clocks) return fail(at_files_key(scenario, "sky.clocks", clocks.error()));
+    auto biases = read_tables<CodeBiases>(files.biases, read_bias_file);
+    if (!biases) return fail(at_files_key(scenario, "sky.biases", biases.error()));
     PreciseTruth::Parts parts{std::move(**orbits), std::move(*clocks), nullptr, std::move(*biases)};
     if (!files.antennas.empty()) {
         auto antennas = read_antenna_file(files.antennas);
-        if (!antennas) return fail(antennas.error());
+        if (!antennas) return fail(at_files_key(scenario, "sky.antennas", antennas.error()));
         parts.antennas = std::make_shared<const AntennaCatalogue>(std::move(*antennas));
     }
     return PreciseTruth(std::move(parts));
@@ -102,7 +109,7 @@ Result<void> check_span(const Scenario& scenario, const TimeSpan& span, LoadedNa
 Result<void> load_precise_truth(const Scenario& scenario, LoadedNavigation& loaded) {
     if (scenario.sky.precise.orbits.empty()) return {};
     if (const auto checked = check_use(scenario); !checked) return fail(checked.error());
-    auto precise = read_products(scenario.sky.precise);
+    auto precise = read_products(scenario);
     if (!precise) return fail(precise.error());
     const std::optional<TimeSpan> span = precise->span();
     if (!span) return refuse_products(scenario, "orbits and clocks have no time in common");

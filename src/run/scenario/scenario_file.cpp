@@ -145,17 +145,17 @@ void read_precise_files(TableReader& sky, PreciseFiles& files, const std::filesy
     read_files(sky, "orbits", files.orbits, folder,
                {"SP3 files, packed too: where the satellites of `navigation` really are, and what their clocks show",
                 "the records are the truth"});
-    sky.where(!files.orbits.empty(), "with orbits", [&] {
-        read_files(sky, "clocks", files.clocks, folder,
-                   {"RINEX clock files, packed too: the clocks of `orbits`", "those of the SP3 files"});
-        read_files(sky, "biases", files.biases, folder,
-                   {"SINEX BIAS files (.BIA, .BSX), packed too: by how much each code of a satellite is late",
-                    "the group delays of the records"});
-        sky.file_path("antennas", folder, files.antennas,
-                      {"ANTEX file, packed too: where satellites and `antenna_type` of receivers have their phase "
-                       "centres",
-                       "signals leave from the centre of mass"});
-    });
+    read_files(sky, "clocks", files.clocks, folder,
+               {"RINEX clock files, packed too: the clocks of `orbits`", "those of the SP3 files"});
+    read_files(sky, "biases", files.biases, folder,
+               {"SINEX BIAS files (.BIA, .BSX), packed too: by how much each code of a satellite is late",
+                "the group delays of the records"});
+    sky.file_path("antennas", folder, files.antennas,
+                  {"ANTEX file, packed too: where satellites and `antenna_type` of receivers have their phase centres",
+                   "signals leave from the centre of mass"});
+    if (!files.orbits.empty()) return;
+    for (const char* key : {"clocks", "biases", "antennas"})
+        if (sky.has(key)) sky.mistake(key, "comes beside the orbits that it belongs to; expected sky.orbits, too");
 }
 
 void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {

@@ -285,5 +285,46 @@ TEST(PreciseRun, MeasuresAntennasWindUpAndTides) {
     EXPECT_GT(phases, 12);
 }
 
+// The hour for which there are clocks: records of 2010-07-01, and a file of biases that is made up.
+TEST(PreciseRun, TakesClocksAndBiases) {
+    SKYLOOP_REQUIRE_SHARED(clocks, "precise/igs15904.clk");
+    const test::TemporaryFolder folder;
+    std::string lines;
+    for (int prn = 1; prn <= 32; ++prn)
+        lines += fmt::format(" {:<4} {:<4} G{:02} {:<9} {:<4} {:<4} 2010:182:00000 2010:183:00000 {:<4} {:21.4f}\n",
+                             "OSB", "", prn, "", "C1C", "", "ns", 0.5 * prn);
+    std::ofstream(folder / "made.bia") << "%=BIA 1.00\n+BIAS/SOLUTION\n" << lines << "-BIAS/SOLUTION\n";
+    const std::string sky =
+        shared_sky("nav/brdc1820.10n", "precise/igs15904.sp3") + fmt::format("clocks = \"{}\"\n", clocks.string());
+    EXPECT_THAT(refusal_of("[run]\nduration_s = 7200\n" + sky), HasSubstr("expected 2010-06-30T23:59:45Z to "
+                                                                          "2010-07-01T00:54:45Z"));
+    auto plain = made_with("[run]\nduration_s = 60\n" + sky);
+    auto late = made_with("[run]\nduration_s = 60\n" + sky + "biases = \"" + (folder / "made.bia").string() + "\"\n");
+    ASSERT_TRUE(plain && late);
+    ReceiverSettings settings;
+    settings.signals = {{Constellation::gps, Signal::l1}};
+    const GpsTime now = gps_calendar_time(2010, 7, 1, 0, 20, 0);
+    const Trace a = plain->run(now, settings), b = late->run(now, settings);
+    const auto& first = a.epoch.observations.signals;
+    const auto& second = b.epoch.observations.signals;
+    ASSERT_EQ(first.size(), second.size());
+    EXPECT_GT(first.size(), 5U);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        const auto record = plain->navigation().ephemeris(first[i].satellite, now);
+        const double expected = 0.5e-9 * first[i].satellite.number - group_delay(*record, Signal::l1)->value();
+        EXPECT_NEAR((*second[i].pseudorange - *first[i].pseudorange).value(), speed_of_light * expected, 1e-6);
+    }
+}
+
+TEST(PreciseRun, NamesTheKeyOfAFileThatIsNotThere) {
+    SKYLOOP_REQUIRE_SHARED(products, orbits_2023);
+    EXPECT_THAT(refusal_of(shared_sky(navigation_2023, orbits_2023, "antennas = \"none.atx\"\n")),
+                StartsWith("test.toml:4:12: sky.antennas: none.atx: "));
+    const auto alone = read_scenario("[sky]\nclocks = \"a.clk\"\n", "test.toml");
+    ASSERT_FALSE(alone);
+    EXPECT_THAT(alone.error().message,
+                HasSubstr("sky.clocks: comes beside the orbits that it belongs to; expected sky.orbits, too"));
+}
+
 }  // namespace
 }  // namespace skyloop
