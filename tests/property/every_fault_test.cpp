@@ -91,6 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryFault, testing::ValuesIn(fault_rows),
 TEST(FaultRows, AreThoseOfTheCatalogue) {
     std::vector<std::string> kinds, rows;
     for (const FaultKind& kind : fault_kinds()) {
+        // The bench's sky is not authenticated: unit/fault has these.
+        if (kind.name.starts_with("osnma_")) continue;
         kinds.emplace_back(kind.name);
         EXPECT_FALSE(kind.cause.empty()) << kind.name;
         const FaultRow* row = fault_row(kind.name);

@@ -38,9 +38,9 @@ struct CnavFields {
         put_scaled_unsigned(bits, gps_tow(r.toe), 11, cnav_time_step_s);
         const double axis = r.sqrt_a * r.sqrt_a;
         put_scaled(bits, axis - reference_axis_m(r.satellite.constellation), 26, power_of_two(-9));
-        bits.put(0, 25);  // its rate
+        put_scaled(bits, r.axis_rate, 25, power_of_two(-21));
         put_semicircles(bits, r.delta_n, 17, -44);
-        bits.put(0, 23);  // its rate
+        put_semicircles(bits, r.delta_n_rate, 23, -57);
         put_circle(bits, r.m0, 33);
         put_scaled_unsigned(bits, r.e, 33, power_of_two(-34));
         put_circle(bits, r.omega, 33);

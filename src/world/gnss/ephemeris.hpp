@@ -22,6 +22,7 @@ enum class NavigationMessage {
     d2,       ///< BeiDou GEO
     fdma,     ///< GLONASS strings of the FDMA signals
     sbas,     ///< SBAS message 9
+    modern,   ///< GPS and QZSS CNAV and CNAV-2, BeiDou B-CNAV1 to 3
     almanac,  ///< a coarse orbit, good to kilometres for a week or more
 };
 
@@ -43,6 +44,7 @@ struct KeplerEphemeris {
     double m0 = 0;
     double delta_n = 0;                                           ///< rad/s
     double cuc = 0, cus = 0, crc = 0, crs = 0, cic = 0, cis = 0;  ///< rad, rad, m, m, rad, rad
+    double axis_rate = 0, delta_n_rate = 0;                       ///< m/s, rad/s²; of modern messages alone
 
     double af0 = 0, af1 = 0, af2 = 0;  ///< s, s/s, s/s²
     double tgd = 0;                    ///< s; TGD, of NavIC that of S band, of Galileo BGD(E1,E5a), of BeiDou TGD1

@@ -30,16 +30,19 @@ bool tells_when_it_came(const Ephemeris& record) {
 
 // Which records serve: messages of one satellite are not mixed.
 std::vector<std::size_t> serving_records(const std::vector<Ephemeris>& records) {
-    std::set<SatelliteId> with_inav, with_ephemeris, with_t0;
+    std::set<SatelliteId> with_inav, with_legacy, with_ephemeris, with_t0;
     for (const Ephemeris& r : records) {
         if (message_of(r) == NavigationMessage::sbas && !tells_when_it_came(r)) with_t0.insert(satellite_of(r));
         if (message_of(r) == NavigationMessage::inav) with_inav.insert(satellite_of(r));
-        if (message_of(r) != NavigationMessage::almanac) with_ephemeris.insert(satellite_of(r));
+        if (message_of(r) == NavigationMessage::almanac) continue;
+        with_ephemeris.insert(satellite_of(r));
+        if (message_of(r) != NavigationMessage::modern) with_legacy.insert(satellite_of(r));
     }
     std::vector<std::size_t> serving;
     for (std::size_t i = 0; i < records.size(); ++i) {
         const NavigationMessage message = message_of(records[i]);
         if (message == NavigationMessage::fnav && with_inav.contains(satellite_of(records[i]))) continue;
+        if (message == NavigationMessage::modern && with_legacy.contains(satellite_of(records[i]))) continue;
         if (message == NavigationMessage::almanac && with_ephemeris.contains(satellite_of(records[i]))) continue;
         if (tells_when_it_came(records[i]) && with_t0.contains(satellite_of(records[i]))) continue;
         serving.push_back(i);

@@ -40,7 +40,8 @@ public:
     /// @param description for people: the name of the file or files
     ///
     /// Messages of a satellite are not mixed: of Galileo I/NAV is taken, and F/NAV only when it has no record of I/NAV;
-    /// an almanac serves a satellite only when it has no ephemeris.
+    /// of GPS, QZSS and BeiDou CNAV and its like only when it has no record of LNAV, D1 or D2; an almanac serves a
+    /// satellite only when it has no ephemeris.
     NavigationData(const std::vector<Ephemeris>& records, const BroadcastIonosphere& ionosphere,
                    std::string description, EphemerisSelection selection = {});
 

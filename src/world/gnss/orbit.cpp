@@ -52,7 +52,7 @@ struct PlaneState {
 // The Earth's rotation since toe, of a geostationary BeiDou satellite, is applied after the tilt of its frame.
 PlaneState plane_state(const KeplerEphemeris& eph, const OrbitConstants& constants, double tk, double anomaly,
                        double anomaly_dot) {
-    const double a = eph.sqrt_a * eph.sqrt_a;
+    const double a = eph.sqrt_a * eph.sqrt_a + eph.axis_rate * tk;
     const double e = eph.e;
     const double sin_e = std::sin(anomaly);
     const double cos_e = std::cos(anomaly);
@@ -65,7 +65,8 @@ PlaneState plane_state(const KeplerEphemeris& eph, const OrbitConstants& constan
     const double u = phi + eph.cus * s2 + eph.cuc * c2;
     const double u_dot = phi_dot * (1 + 2 * (eph.cus * c2 - eph.cuc * s2));
     const double r = a * (1 - e * cos_e) + eph.crs * s2 + eph.crc * c2;
-    const double r_dot = a * e * sin_e * anomaly_dot + 2 * phi_dot * (eph.crs * c2 - eph.crc * s2);
+    const double r_dot =
+        a * e * sin_e * anomaly_dot + 2 * phi_dot * (eph.crs * c2 - eph.crc * s2) + eph.axis_rate * (1 - e * cos_e);
 
     PlaneState p{};
     p.x = r * std::cos(u);
@@ -161,8 +162,8 @@ SatelliteState satellite_state(const KeplerEphemeris& eph, GpsTime time, Seconds
     const double tc = difference(time, eph.toc).value() + offset.value();
     const double a = eph.sqrt_a * eph.sqrt_a;
     const double n = std::sqrt(constants.gravity / (a * a * a)) + eph.delta_n;
-    const double anomaly = eccentric_anomaly(eph.m0 + n * tk, eph.e);
-    const double anomaly_dot = n / (1 - eph.e * std::cos(anomaly));
+    const double anomaly = eccentric_anomaly(eph.m0 + (n + 0.5 * eph.delta_n_rate * tk) * tk, eph.e);
+    const double anomaly_dot = (n + eph.delta_n_rate * tk) / (1 - eph.e * std::cos(anomaly));
 
     SatelliteState state;
     rotate_to_ecef(plane_state(eph, constants, tk, anomaly, anomaly_dot), state);

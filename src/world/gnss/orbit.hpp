@@ -34,7 +34,8 @@ struct SatelliteState {
 
 /// Orbit and clock by the user algorithm of IS-GPS-200 (20.3.3.4.3.1 and 20.3.3.3.3.1) with the constants of the
 /// record's system, velocity by its derivative (Remondi 2004). Geostationary BeiDou satellites by the B1I ICD 3.0,
-/// table 5-11. @param offset added to `time`, s, for transmission times finer than a nanosecond
+/// table 5-11. Rates of axis and mean motion as those of modern messages (IS-GPS-200N, table 30-II).
+/// @param offset added to `time`, s, for transmission times finer than a nanosecond
 SatelliteState satellite_state(const KeplerEphemeris& ephemeris, GpsTime time, Seconds offset = Seconds(0));
 
 /// The simplified equations of motion of the ICD L1, L2 GLONASS 5.1, A.3.1.2, by the classical Runge-Kutta method in

@@ -22,8 +22,9 @@ struct BlockMessage {
     std::string_view systems;
     std::string_view name;
     NavigationMessage message;
+    RecordLayout layout = RecordLayout::legacy;
 };
-constexpr std::array<BlockMessage, 7> block_messages{{
+constexpr std::array<BlockMessage, 12> block_messages{{
     {"GJI", "LNAV", NavigationMessage::lnav},
     {"E", "INAV", NavigationMessage::inav},
     {"E", "FNAV", NavigationMessage::fnav},
@@ -31,6 +32,11 @@ constexpr std::array<BlockMessage, 7> block_messages{{
     {"C", "D2", NavigationMessage::d2},
     {"R", "FDMA", NavigationMessage::fdma},
     {"S", "SBAS", NavigationMessage::sbas},
+    {"GJ", "CNAV", NavigationMessage::modern, RecordLayout::cnav},
+    {"GJ", "CNV2", NavigationMessage::modern, RecordLayout::cnav2},
+    {"C", "CNV1", NavigationMessage::modern, RecordLayout::b_cnav},
+    {"C", "CNV2", NavigationMessage::modern, RecordLayout::b_cnav},
+    {"C", "CNV3", NavigationMessage::modern, RecordLayout::b_cnav3},
 }};
 
 // Field `index` of a block's body, counted from the first of four on each line; the epoch takes the first one's place.
@@ -78,12 +84,12 @@ BlockHead block_head(std::string_view line) {
 }
 
 // The message that brings ephemerides of this name, of those that are read.
-std::optional<NavigationMessage> message_of_block(const BlockHead& head) {
-    if (head.type != "EPH" || !head.satellite) return std::nullopt;
+const BlockMessage* message_of_block(const BlockHead& head) {
+    if (head.type != "EPH" || !head.satellite) return nullptr;
     const char letter = rinex_letter(head.satellite->constellation);
     for (const BlockMessage& m : block_messages)
-        if (m.name == head.message && m.systems.find(letter) != std::string_view::npos) return m.message;
-    return std::nullopt;
+        if (m.name == head.message && m.systems.find(letter) != std::string_view::npos) return &m;
+    return nullptr;
 }
 
 bool is_read_ionosphere(const BlockHead& head) {
@@ -161,7 +167,7 @@ private:
         advance();
         if (head.type == "EPH" && head.satellite && line_ && begins_record(line_->text, major_) &&
             !line_->text.starts_with('>')) {
-            if (const auto message = message_of_block(head)) return record(message);
+            if (const BlockMessage* message = message_of_block(head)) return record(message);
         }
         std::vector<Line> body;
         for (; line_ && !line_->text.starts_with('>'); advance())
@@ -190,7 +196,8 @@ private:
                   "a block header such as '> EPH G02 LNAV' and a record");
     }
 
-    void record(std::optional<NavigationMessage> message = std::nullopt) {
+    // @param message of version 4
+    void record(const BlockMessage* message = nullptr) {
         if (continues()) return stray();
         const Line first = *line_;
         const std::optional<SatelliteId> satellite = record_satellite(first.text, major_, system_);
@@ -199,11 +206,16 @@ private:
                   major_ == 2 ? "a satellite number" : "a satellite such as 'G07'");
             return skip_record();
         }
-        ephemeris({*satellite, major_, message}, first);
+        RecordKind kind{*satellite, major_, std::nullopt};
+        if (message != nullptr) {
+            kind.message = message->message;
+            kind.layout = message->layout;
+        }
+        ephemeris(kind, first);
     }
 
     void ephemeris(const RecordKind& kind, const Line& first) {
-        const RecordLength length = record_length(kind.satellite.constellation);
+        const RecordLength length = record_length(kind.satellite.constellation, kind.layout);
         std::array<Line, longest_record> lines{first};
         std::size_t count = 1;
         // Within a record a blank line is one whose fields are all blank.
@@ -239,7 +251,7 @@ private:
             if (t->count > 0) return fail(ErrorCode::input, t->first + "; no record could be read");
         if (!file_.skipped.messages.empty())
             return refused(name_, lines_.number(), fmt::format("only messages of other kinds ({})", messages()),
-                           "ephemerides of LNAV, INAV, FNAV, D1, D2, FDMA or SBAS");
+                           "ephemerides of LNAV, INAV, FNAV, D1, D2, FDMA, SBAS, CNAV or CNV1 to CNV3");
         if (!file_.warnings.empty()) return fail(ErrorCode::input, file_.warnings.front() + "; no record follows");
         return refused(name_, lines_.number(), "the end of the file and no ephemeris", "records after the header");
     }

@@ -38,10 +38,11 @@ struct NavigationFile {
 
 /// Reads the text of a RINEX 2.00–2.12, 3.00–3.05 or 4.00–4.02 navigation file of any system.
 ///
-/// Read are the messages LNAV (GPS, QZSS, NavIC), I/NAV, F/NAV, D1, D2, FDMA and SBAS. Exponents may be D or E; blank
-/// fields are 0; what only costs a record costs that record and a warning. Times are resolved by each record's own
-/// calendar epoch (BDT of BeiDou, UTC of GLONASS, GPST of the others), so weeks may be reduced modulo 1024.
-/// Fails with `input` when the text is of another kind or version, or when no record can be read.
+/// Read are the messages LNAV (GPS, QZSS, NavIC), I/NAV, F/NAV, D1, D2, FDMA and SBAS, of version 4 CNAV and CNAV-2
+/// (GPS, QZSS) and B-CNAV1 to 3 (BeiDou), too. Exponents may be D or E; blank fields are 0; what only costs a record
+/// costs that record and a warning. Times are resolved by each record's own calendar epoch (BDT of BeiDou, UTC of
+/// GLONASS, GPST of the others), so weeks may be reduced modulo 1024. Fails with `input` when the text is of another
+/// kind or version, or when no record can be read.
 /// @param name of the file, for messages
 Result<NavigationFile> read_navigation(std::string_view text, std::string_view name);
 

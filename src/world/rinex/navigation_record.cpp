@@ -101,7 +101,7 @@ struct KeplerField {
 
 using Eph = KeplerEphemeris;
 constexpr double full_turn = 7;
-constexpr std::array<KeplerField, 20> kepler_fields{{
+constexpr std::array<KeplerField, 18> kepler_fields{{
     {{0, 1, "the clock offset", -1, 1, false}, &Eph::af0},
     {{0, 2, "the clock drift", -1e-6, 1e-6, false}, &Eph::af1},
     {{0, 3, "the clock drift rate", -1e-9, 1e-9, false}, &Eph::af2},
@@ -120,9 +120,9 @@ constexpr std::array<KeplerField, 20> kepler_fields{{
     {{4, 2, "the argument of perigee", -full_turn, full_turn, true}, &Eph::omega},
     {{4, 3, "OMEGA DOT", -1e-5, 1e-5, false}, &Eph::omega_dot},
     {{5, 0, "IDOT", -1e-6, 1e-6, false}, &Eph::idot},
-    {{6, 0, "the accuracy", -1, 1e12, false}, &Eph::accuracy_m},
-    {{6, 2, "the group delay", -1e-3, 1e-3, false}, &Eph::tgd},
 }};
+constexpr KeplerField legacy_accuracy{{6, 0, "the accuracy", -1, 1e12, false}, &Eph::accuracy_m};
+constexpr KeplerField legacy_delay{{6, 2, "the group delay", -1e-3, 1e-3, false}, &Eph::tgd};
 
 // Galileo's data sources: bits 0 and 2 I/NAV, 1 F/NAV; bit 8: the clock is of E5a, E1 (F/NAV), bit 9: of E5b, E1
 // (RINEX 3.05, table A8).
@@ -142,6 +142,9 @@ public:
 
     tl::expected<KeplerEphemeris, Defect> read() {
         for (const KeplerField& f : kepler_fields)
+            eph_.*f.value = fields_.number(f.rule);
+        if (kind_.layout != RecordLayout::legacy) return read_modern();
+        for (const KeplerField& f : {legacy_accuracy, legacy_delay})
             eph_.*f.value = fields_.number(f.rule);
         eph_.iode = fields_.whole({1, 0, "the issue of data", 0, 65535, false});
         eph_.health = fields_.whole({6, 1, "the health", 0, 65535, false});
@@ -185,6 +188,55 @@ private:
         }
     }
 
+    // The orbit of CNAV and its like is that of LNAV with two rates. The reference time of GPS's is that of the clock,
+    // and no issue is told; what BeiDou's accuracies are in metres no document says.
+    tl::expected<KeplerEphemeris, Defect> read_modern() {
+        eph_.message = NavigationMessage::modern;
+        eph_.axis_rate = fields_.number({1, 0, "the rate of the axis", -10, 10, false});
+        eph_.delta_n_rate = fields_.number({5, 1, "the rate of delta n", -1e-9, 1e-9, false});
+        const double toe_tow = fields_.number({3, 0, "the toe", 0, static_cast<double>(seconds_per_week), true});
+        if (beidou()) {
+            const std::size_t health_line = kind_.layout == RecordLayout::b_cnav3 ? 7 : 8;
+            eph_.accuracy_m = usual_accuracy_m;
+            eph_.health = fields_.whole({health_line, 1, "the health", 0, 65535, false});
+            if (kind_.layout == RecordLayout::b_cnav) {
+                eph_.iodc = fields_.whole({8, 3, "IODC", 0, 65535, false});
+                eph_.iode = fields_.whole({9, 3, "IODE", 0, 65535, false});
+            }
+        } else {
+            eph_.accuracy_m = modern_accuracy(fields_.number({6, 0, "the accuracy index", -16, 15, false}));
+            eph_.health = fields_.whole({6, 1, "the health", 0, 65535, false});
+            // 9.999E+09 and the like stand for an unknown one.
+            const double delay = fields_.number({6, 2, "the group delay", -1e12, 1e12, false});
+            eph_.tgd = std::abs(delay) < 1e-3 ? delay : 0;
+        }
+        eph_.toc = fields_.epoch();
+        eph_.toe = eph_.toc;
+        if (!fields_.defect() && beidou()) reference_time(toe_tow, 0);
+        if (fields_.defect()) return tl::make_unexpected(*fields_.defect());
+        if (beidou()) {
+            eph_.toc += bdt_lag;
+            eph_.toe += bdt_lag;
+        } else {
+            constexpr std::int64_t step_s = 300, issues = 256;
+            eph_.iode = eph_.iodc =
+                static_cast<int>(week_and_tow(eph_.toe).tow / std::chrono::seconds(step_s) % issues);
+        }
+        return eph_;
+    }
+
+    // The upper bound of URA_ED by its index (IS-GPS-200N, 30.3.3.1.1.4); −16 and 15 are no prediction.
+    static double modern_accuracy(double index) {
+        constexpr std::array<double, 30> bounds{0.01,  0.02, 0.03, 0.04, 0.06, 0.08, 0.11, 0.15, 0.21, 0.3,
+                                                0.43,  0.6,  0.85, 1.2,  1.7,  2.4,  3.4,  4.85, 6.85, 9.65,
+                                                13.65, 24,   48,   96,   192,  384,  768,  1536, 3072, 6144};
+        const auto place = static_cast<std::int64_t>(std::llround(index)) + 15;
+        constexpr double none_predicted = 8192;
+        return place < 0 || place >= static_cast<std::int64_t>(bounds.size()) ? none_predicted
+                                                                              : bounds[static_cast<std::size_t>(place)];
+    }
+    static constexpr double usual_accuracy_m = 2;
+
     // toe is the instant with that time of week that lies nearest to the clock's epoch; the week must tell of the same.
     void reference_time(double toe_tow, double week) {
         const std::int64_t toc_week = week_and_tow(eph_.toc).week;
@@ -194,7 +246,8 @@ private:
         if (eph_.toc - eph_.toe > week_length / 2) eph_.toe += week_length;
         if (std::chrono::abs(eph_.toe - eph_.toc) > std::chrono::days(1))
             return fields_.refuse(3, 0, fmt::format("toe {} s", toe_tow), "toe within a day of the record's epoch");
-        if (!fields_.blank(5, 2)) check_week(static_cast<std::int64_t>(std::llround(week)));
+        if (kind_.layout == RecordLayout::legacy && !fields_.blank(5, 2))
+            check_week(static_cast<std::int64_t>(std::llround(week)));
     }
 
     void check_week(std::int64_t stated) {

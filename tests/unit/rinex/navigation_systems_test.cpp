@@ -250,12 +250,12 @@ TEST(NavigationSystems, ReadsTheBlocksOfVersionFour) {
                                field(9e-10) + field(2e-15) + "\n";
     const NavigationFile file = systems_of(
         header_v3("4.00") + block("EPH G05 LNAV", kepler_text("G05")) +
-        block("EPH G05 CNAV", kepler_text("G05") + "    1.0\n") + block("STO G05 LNAV", offset) +
+        block("EPH I05 L1NV", kepler_text("I05") + "    1.0\n") + block("STO G05 LNAV", offset) +
         block("ION G05 LNAV", klobuchar) + block("ION E05 IFNV", galileo) + block("ION C05 D1D2", klobuchar) +
         block("ION C05 CNVX", klobuchar) + block("EOP G05 LNAV", klobuchar) +
         block("EPH E05 INAV", galileo_text("E05", 517)) + block("EPH E05 FNAV", galileo_text("E05", 258)) +
         block("EPH J02 LNAV", kepler_text("J02", 6493.5)) + block("EPH C01 D2", kepler_text("C01", 6493.5, 948)) +
-        block("EPH C21 D1", kepler_text("C21", 5282.5, 948)) + block("EPH C21 CNV1", kepler_text("C21", 5282.5, 948)) +
+        block("EPH C21 D1", kepler_text("C21", 5282.5, 948)) + block("EPH C21 CNV9", kepler_text("C21", 5282.5, 948)) +
         block("EPH R03 FDMA", state_vector_text({.first = std::string("R03") + march_5}, 4, true)) +
         block("EPH S23 SBAS", sbas_text(std::string("S23") + march_5)) +
         block("EPH I02 LNAV", kepler_text("I02", 6493.5)));
@@ -264,12 +264,12 @@ TEST(NavigationSystems, ReadsTheBlocksOfVersionFour) {
     EXPECT_EQ(file.ionosphere.gps->beta, (std::array<double, 4>{8e4, 9e4, -6e4, -5e5}));
     EXPECT_TRUE(file.ionosphere.beidou);
     EXPECT_EQ((*file.ionosphere.galileo)[0], 120.75);
-    EXPECT_THAT(file.skipped.messages, ElementsAre(Pair("CNAV", 1), Pair("CNV1", 1), Pair("EOP", 1), Pair("ION", 1)));
+    EXPECT_THAT(file.skipped.messages, ElementsAre(Pair("CNV9", 1), Pair("EOP", 1), Pair("ION", 1), Pair("L1NV", 1)));
     EXPECT_EQ(file.skipped.defective, 0);
     EXPECT_THAT(file.warnings,
-                ElementsAre("made.nav: skipped messages of other kinds (1 'CNAV', 1 'CNV1', 1 'EOP', 1 'ION')"));
-    EXPECT_THAT(refusal_of(header_v3("4.00") + block("EPH G05 CNAV", kepler_text("G05"))),
-                HasSubstr("found only messages of other kinds (1 'CNAV'); expected ephemerides of LNAV"));
+                ElementsAre("made.nav: skipped messages of other kinds (1 'CNV9', 1 'EOP', 1 'ION', 1 'L1NV')"));
+    EXPECT_THAT(refusal_of(header_v3("4.00") + block("EPH I05 L1NV", kepler_text("I05"))),
+                HasSubstr("found only messages of other kinds (1 'L1NV'); expected ephemerides of LNAV"));
 }
 
 // Coefficients are a system's, whichever satellite sent them; GNSS-SDR's files name no satellite.

@@ -116,14 +116,16 @@ bool all_same(const Numbers& a, const Numbers& b) {
     return std::equal(std::begin(a), std::end(a), std::begin(b), same);
 }
 
+// Version 3.04 has no place for the name of a modern message and its rates.
 bool same_record(const KeplerEphemeris& a, const KeplerEphemeris& b) {
     const auto numbers = [](const KeplerEphemeris& e) {
         return std::array{e.sqrt_a,  e.e,   e.i0,  e.idot, e.omega0,     e.omega,         e.omega_dot, e.m0,
                           e.delta_n, e.cuc, e.cus, e.crc,  e.crs,        e.cic,           e.cis,       e.af0,
                           e.af1,     e.af2, e.tgd, e.tgd2, e.accuracy_m, e.fit_interval_h};
     };
-    return a.satellite == b.satellite && a.message == b.message && a.toe == b.toe && a.toc == b.toc &&
-           a.iode == b.iode && a.iodc == b.iodc && a.health == b.health && all_same(numbers(a), numbers(b));
+    return a.satellite == b.satellite && (a.message == b.message || a.message == NavigationMessage::modern) &&
+           a.toe == b.toe && a.toc == b.toc && a.iode == b.iode && a.iodc == b.iodc && a.health == b.health &&
+           all_same(numbers(a), numbers(b));
 }
 template <class StateVector>
 bool same_motion(const StateVector& a, const StateVector& b) {

@@ -23,14 +23,26 @@ struct Defect {
     std::string expected;
 };
 
+/// Where the fields of a record stand.
+enum class RecordLayout {
+    legacy,   ///< as versions 2 and 3 have them
+    cnav,     ///< of GPS and QZSS (RINEX 4.00, table A7)
+    cnav2,    ///< likewise, with two more corrections of signals
+    b_cnav,   ///< BeiDou B-CNAV1 and 2 (RINEX 4.00, tables A17 and A18)
+    b_cnav3,  ///< BeiDou B-CNAV3 (table A19)
+};
+
 /// How many lines a record has: the epoch with the clock, then orbit lines of four fields.
 struct RecordLength {
     std::size_t least = 8;
     std::size_t most = 8;
 };
-inline constexpr std::size_t longest_record = 8;
-/// GLONASS records have a fifth line from version 3.05 on.
-constexpr RecordLength record_length(Constellation constellation) {
+inline constexpr std::size_t longest_record = 10;
+/// GLONASS records have a fifth line from version 3.05 on. The last line of modern ones tells the time of transmission,
+/// which nobody needs.
+constexpr RecordLength record_length(Constellation constellation, RecordLayout layout) {
+    if (layout == RecordLayout::cnav || layout == RecordLayout::b_cnav3) return {8, 9};
+    if (layout != RecordLayout::legacy) return {9, 10};
     if (constellation == Constellation::glonass) return {4, 5};
     if (constellation == Constellation::sbas) return {4, 4};
     return {8, 8};
@@ -41,6 +53,7 @@ struct RecordKind {
     SatelliteId satellite;
     int major = 3;                             ///< version
     std::optional<NavigationMessage> message;  ///< nothing: the record itself tells
+    RecordLayout layout = RecordLayout::legacy;
 };
 
 /// True for a line on which a record begins: the lines that continue one begin with spaces.
