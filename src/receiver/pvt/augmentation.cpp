@@ -22,7 +22,7 @@ void Augmentation::hear(std::span<const Subframe> messages, const ReceiverSettin
             satellites_[message.satellite].hear(message, settings.sbas_test_mode);
 }
 
-// Messages speak of the record before for some minutes (DO-229, A.4.4.7).
+// Messages speak of the record before until they have come round (DO-229, A.4.4.7).
 void Augmentation::remember_records(const Input& input) {
     std::optional<SatelliteId> last;
     for (const Observation& o : input.observations.signals) {

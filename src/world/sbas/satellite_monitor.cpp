@@ -18,7 +18,7 @@ namespace {
 
 constexpr double square_of(double x) { return x * x; }
 
-constexpr std::chrono::seconds long_term_period{60}, record_hold{150};
+constexpr std::chrono::seconds long_term_period{60};
 constexpr Angle monitor_mask = Angle::degrees(5);
 // Of a station's range, and of each part of an error without any measurement, m, 1 σ; ours.
 constexpr double range_deviation = 0.02, error_deviation = 1;
@@ -96,8 +96,7 @@ void SatelliteMonitor::begin_minute(GpsTime minute) {
     minute_ = minute;
     long_term_.clear();
     for (const SatelliteId id : navigation_->satellites()) {
-        auto record = navigation_->ephemeris(id, minute - record_hold);
-        if (!record) record = navigation_->ephemeris(id, minute);
+        const auto record = navigation_->ephemeris(id, minute);
         if (record && is_healthy(*record)) long_term_.insert({id, {*record}});
     }
     for (const auto& [id, errors] : look(minute)) {

@@ -24,8 +24,8 @@ struct MonitoredSatellite {
 };
 
 /// Solves the errors of each satellite from the ranges of all stations that see it, at each whole minute for orbit and
-/// slow clock, and at once for the rest. The records corrected are those that were sent two and a half minutes before
-/// that minute, so that users have received the ones that message 25 speaks of (DO-229, A.4.4.7, leaves the time open).
+/// slow clock, and at once for the rest. The records corrected are those that are sent at that minute: users keep the
+/// one before until they hear of the new one.
 ///
 /// State: what each station has observed, the errors' processes, and the corrections of the last minute.
 class SatelliteMonitor {
