@@ -84,12 +84,13 @@ void SbasData::take_long_term(const SbasLongTermHalf& half, GpsTime time) {
 }
 
 std::optional<std::size_t> SbasData::index_of(SatelliteId satellite, GpsTime time) const {
-    const auto slot = sbas_mask_slot(satellite);
-    if (!slot || !mask_ || !is_fresh(mask_->time, time, mask_lasts)) return std::nullopt;
-    const auto& slots = mask_->message.slots;
-    const auto found = std::ranges::lower_bound(slots, *slot);
-    if (found == slots.end() || *found != *slot) return std::nullopt;
-    return static_cast<std::size_t>(found - slots.begin());
+    std::optional<std::size_t> index;
+    const std::optional<int> slot = sbas_mask_slot(satellite);
+    if (!slot || !mask_ || !is_fresh(mask_->time, time, mask_lasts)) return index;
+    const std::vector<int>& slots = mask_->message.slots;
+    const auto found = std::lower_bound(slots.begin(), slots.end(), *slot);
+    if (found != slots.end() && *found == *slot) index = static_cast<std::size_t>(found - slots.begin());
+    return index;
 }
 
 std::optional<SbasCorrection> SbasData::correction(SatelliteId satellite, GpsTime time) const {
