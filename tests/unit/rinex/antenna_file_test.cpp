@@ -25,7 +25,7 @@ std::string antenna_refusal(const std::string& text) {
     return read ? std::string() : read.error().message;
 }
 
-std::string g07(std::string_view type, double z_mm, const std::string& valid) {
+std::string block_of_g07(std::string_view type, double z_mm, const std::string& valid) {
     return antex_antenna({type,
                           "G07",
                           "G048      2008-012A",
@@ -40,8 +40,8 @@ const std::string until_2010 = antex_line("  1995     1     1     0     0    0.0
 const std::string from_2011 = antex_line("  2011     1     1     0     0    0.0000000", "VALID FROM");
 
 TEST(AntennaFile, ReadsSatellitesAndWhenTheyWere) {
-    const AntennaCatalogue all =
-        catalogue_of(antex_header() + g07("BLOCK IIA", 2000, until_2010) + g07("BLOCK IIR-M", 800, from_2011));
+    const AntennaCatalogue all = catalogue_of(antex_header() + block_of_g07("BLOCK IIA", 2000, until_2010) +
+                                              block_of_g07("BLOCK IIR-M", 800, from_2011));
     const auto* old = all.satellites.of(antenna_satellite, gps_calendar_time(2010, 12, 31, 23, 0, 0));
     ASSERT_NE(old, nullptr);
     const PhaseCentre* l1 = old->at(Constellation::gps, Signal::l1);
@@ -80,7 +80,7 @@ TEST(AntennaFile, ReadsReceiversByNameAndAzimuth) {
 TEST(AntennaFile, PassesOverDeviationsAndOtherVehicles) {
     const std::string deviations = antex_line("   G01", "START OF FREQ RMS") + "   NOAZI    0.10    0.10    0.10\n" +
                                    antex_line("   G01", "END OF FREQ RMS") + antex_line("", "END OF ANTENNA");
-    std::string text = antex_header() + g07("BLOCK IIA", 2000, from_2011);
+    std::string text = antex_header() + block_of_g07("BLOCK IIA", 2000, from_2011);
     text.replace(text.rfind(antex_line("", "END OF ANTENNA")), std::string::npos, deviations);
     EXPECT_EQ(catalogue_of(text).satellites.size(), 1U);
 }
@@ -89,7 +89,7 @@ TEST(AntennaFile, NamesTheLineThatIsWrong) {
     EXPECT_THAT(antenna_refusal("hello\n"), HasSubstr("made.atx:1: found 'hello'; expected an ANTEX file"));
     EXPECT_THAT(antenna_refusal(antex_header("R")), HasSubstr("made.atx:2: found 'R'; expected absolute"));
     EXPECT_THAT(antenna_refusal(antex_header()), HasSubstr("no antenna"));
-    std::string text = antex_header() + g07("BLOCK IIA", 2000, from_2011);
+    std::string text = antex_header() + block_of_g07("BLOCK IIA", 2000, from_2011);
     EXPECT_THAT(antenna_refusal(text.substr(0, text.find("END OF ANTENNA"))), HasSubstr("expected END OF ANTENNA"));
     const auto replaced = [&](std::string_view from, std::string_view to) {
         std::string other = text;
