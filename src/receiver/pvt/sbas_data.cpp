@@ -87,9 +87,9 @@ std::optional<std::size_t> SbasData::index_of(SatelliteId satellite, GpsTime tim
     std::optional<std::size_t> index;
     const std::optional<int> slot = sbas_mask_slot(satellite);
     if (!slot || !mask_ || !is_fresh(mask_->time, time, mask_lasts)) return index;
-    const std::vector<int>& slots = mask_->message.slots;
-    const auto found = std::lower_bound(slots.begin(), slots.end(), *slot);
-    if (found != slots.end() && *found == *slot) index = static_cast<std::size_t>(found - slots.begin());
+    const SbasPrnMask& mask = mask_->message;
+    const auto found = std::lower_bound(mask.slots.begin(), mask.slots.end(), *slot);
+    if (found != mask.slots.end() && *found == *slot) index = static_cast<std::size_t>(found - mask.slots.begin());
     return index;
 }
 

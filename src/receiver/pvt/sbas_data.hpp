@@ -42,7 +42,7 @@ public:
 private:
     template <class Message>
     struct Heard {
-        Message message{};
+        Message message;
         GpsTime time;
     };
     struct Fast {
