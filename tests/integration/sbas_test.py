@@ -89,7 +89,7 @@ class Sbas(unittest.TestCase):
         return folder
 
     def errors(self, folder, place, **options):
-        """rnx2rtkp's, m, of each epoch of the last two minutes."""
+        """rnx2rtkp's, m, of each epoch of the second half of what it solves, which with SBAS begins after a minute."""
         (folder / "options.conf").write_text(OPTIONS.format(**options), encoding="ascii")
         done = subprocess.run(["rnx2rtkp", "-k", folder / "options.conf", folder / "run/observations.rnx",
                                folder / "run/navigation.rnx", folder / "found.sbs"], capture_output=True, text=True,
@@ -106,7 +106,7 @@ class Sbas(unittest.TestCase):
                 folder = self.heard(place, seed)
                 alone, _ = self.errors(folder, place, iono="brdc", orbits="brdc", prn=0)
                 with_sbas, _ = self.errors(folder, place, iono="sbas", orbits="brdc+sbas", prn=136)
-                self.assertGreater(len(with_sbas), 100, "epochs that RTKLIB solves with our messages")
+                self.assertGreater(len(with_sbas), 60, "epochs that RTKLIB solves with our messages")
                 broadcast.append(median(alone))
                 corrected.append(median(with_sbas))
             print(f"  {name}: broadcast {broadcast}, with SBAS {corrected} m")

@@ -17,7 +17,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Kind = StateName::Kind;
 
-constexpr double place_deviation_m = 30, ambiguity_deviation_m = 100;  // before anything is known
+// Before anything is known: a base that tells a wrong place moves the solution by as much, and ambiguities begin with
+// what their codes say. Larger ones cost digits, which the whole numbers need.
+constexpr double place_deviation_m = 1000, ambiguity_deviation_m = 20;
 constexpr std::size_t least_satellites = 4;
 // A phase that fits neither by its deviation nor by a part of a cycle has lost its count.
 constexpr double misfit_deviations = 5, misfit_m = 0.05;
