@@ -34,13 +34,15 @@ void follow(double& excess, double misfit, Seconds passed) {
 }  // namespace
 
 double CarrierFilter::State::variance_of(const StateName& name, const Spacing& spacing) const {
-    constexpr double least = 1e-4;  // m
+    // What a reference whose place is told wrong by some 100 m leaves goes into the ionosphere's part.
+    constexpr double least = 1e-4, least_ionosphere = 5e-3;  // m
     switch (name.kind) {
         case Kind::wet:
             return square(least + std::min(p_.wet_per_length * spacing.length_m, p_.wet_most.value()) +
                           p_.wet_per_height * std::abs(spacing.height_m));
         case Kind::ionosphere:
-            return square(least + std::min(p_.ionosphere_per_length * spacing.length_m, p_.ionosphere_most.value()));
+            return square(p_.ionosphere_least.value() +
+                          std::min(p_.ionosphere_per_length * spacing.length_m, p_.ionosphere_most.value()));
         default:
             return square(place_deviation_m);
     }

@@ -11,7 +11,7 @@
 namespace skyloop {
 namespace {
 
-const std::vector systems{Constellation::gps, Constellation::sbas, Constellation::galileo};
+const std::vector heard_systems{Constellation::gps, Constellation::sbas, Constellation::galileo};
 
 struct SbasRun {
     explicit SbasRun(const std::string& place, const std::string& seed = "1") {
@@ -19,11 +19,11 @@ struct SbasRun {
             "[run]\nstart = 2024-03-05T10:00:00Z\nseed = " + seed +
             "\n[model]\nname = \"modern\"\n[trajectory]\nkind = \"fixed\"\nat = " + place + "\n");
         start = scenario.run.start.value();
-        auto made =
-            make_simulation(scenario, {std::make_shared<NominalSky>(systems), nullptr, start, test::emulator_data()});
+        auto made = make_simulation(
+            scenario, {std::make_shared<NominalSky>(heard_systems), nullptr, start, test::emulator_data()});
         if (!made) throw std::runtime_error(made.error().message);
         simulation = std::make_unique<Simulation>(std::move(*made));
-        for (const Constellation c : systems)
+        for (const Constellation c : heard_systems)
             settings.signals.insert({c, Signal::l1});
     }
     Trace at(int second) { return simulation->run(start + std::chrono::seconds(second), settings); }

@@ -221,14 +221,14 @@ TEST(SubframeReception, GeostationarySatellitesSendD2) {
             return record;
         }
     } sent;
-    const SatelliteId geo{Constellation::beidou, 2};
+    const SatelliteId stationary{Constellation::beidou, 2};
     SubframeReception slow, fast;
     std::vector<std::uint32_t> pages;
     std::vector<double> whole;
     std::size_t of_fast = 0;
     for (int i = 0; i <= 700; ++i) {
         const GpsTime now = frame_start + std::chrono::milliseconds(100 * i + 50);
-        const Observations o{now, false, {locked_signal(geo, Signal::b1i)}};
+        const Observations o{now, false, {locked_signal(stationary, Signal::b1i)}};
         of_fast += fast.receive(o, sent, now).size();
         if (i % 10 != 0) continue;
         for (const Subframe& s : slow.receive(o, sent, now)) {
