@@ -41,7 +41,7 @@ double CarrierFilter::State::variance_of(const StateName& name, const Spacing& s
             return square(least + std::min(p_.wet_per_length * spacing.length_m, p_.wet_most.value()) +
                           p_.wet_per_height * std::abs(spacing.height_m));
         case Kind::ionosphere:
-            return square(p_.ionosphere_least.value() +
+            return square(least_ionosphere +
                           std::min(p_.ionosphere_per_length * spacing.length_m, p_.ionosphere_most.value()));
         default:
             return square(place_deviation_m);
