@@ -32,7 +32,7 @@ inline constexpr FaultRow fault_rows[] = {
     {"antenna_short", "", "MON-RF", 60, 3, measuring},
     {"jamming", "j_to_s_db = 70", "MON-RF", 60, 3, measuring},
     {"multipath_burst", "", "RXM-RAWX", 60, 3, measuring},
-    {"surroundings", "around = \"urban-canyon\"", "RXM-RAWX", 120, 3, measuring},
+    {"surroundings", "around = \"urban-canyon\"", "RXM-RAWX", 60, 3, measuring},
     {"spoof_takeover", "offset_m = [300, 0, 0]\naligned_s = 5\npull_off_mps = 20", "NAV-PVT", 60, 3, measuring},
     {"meaconing", "rebroadcast_at = [46.51, 30.75, 60]", "NAV-PVT", 60, 3, measuring},
     {"spoof_satellite", "step_m = 500", "RXM-RAWX", 60, 3, measuring},

@@ -184,6 +184,7 @@ double CarrierFilter::State::misfit_of_codes() const {
 std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const SingleDifference> differences,
                                                           const Spacing& spacing, GpsTime time) {
     passed_ = time_ ? difference(time, *time_) : Seconds(0);
+    length_m_ = spacing.length_m;
     present_.assign(differences.begin(), differences.end());
     groups_.clear();
     std::set<SatelliteId> satellites;

@@ -14,6 +14,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t least_pairs = 4;
+// Echoes of a street that a receiver has left stay in the ambiguities for minutes. Where these could be whole, it is
+// sooner to begin anew.
+constexpr Seconds hope_lasts{30};
+constexpr double hope_within_m = 15e3;
 
 double variance_of_phase(const SingleDifference& d) { return d.phase_variance + d.echo_variance; }
 
@@ -119,9 +123,14 @@ std::optional<FixedOffset> CarrierFilter::State::fix() {
         if (chosen.size() < least_pairs || chosen.size() == last) continue;
         last = chosen.size();
         const double least = part.share < 1 ? p_.least_success_of_part : p_.least_success;
-        if (auto fixed = fix(chosen, least)) return fixed;
+        if (auto fixed = fix(chosen, least)) {
+            unfixed_since_.reset();
+            return fixed;
+        }
     }
     fixed_since_.reset();
+    if (!unfixed_since_) unfixed_since_ = time_;
+    hopeless_ = length_m_ < hope_within_m && difference(*time_, *unfixed_since_) >= hope_lasts;
     return std::nullopt;
 }
 

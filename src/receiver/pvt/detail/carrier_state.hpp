@@ -37,7 +37,7 @@ public:
     std::optional<CarrierOffset> update(std::span<const SingleDifference> differences, const Spacing& spacing,
                                         GpsTime time);
     std::optional<FixedOffset> fix();
-    [[nodiscard]] bool contradicted() const { return misfits_ >= p_.most_misfits; }
+    [[nodiscard]] bool contradicted() const { return misfits_ >= p_.most_misfits || hopeless_; }
     [[nodiscard]] bool outlived(GpsTime time) const { return time_ && difference(time, *time_) > p_.memory; }
 
 private:
@@ -69,7 +69,9 @@ private:
     std::map<StateName, Tracked> tracked_;
     std::vector<SingleDifference> present_;  // of the last epoch
     std::map<std::pair<Constellation, Signal>, Group> groups_;
-    std::optional<GpsTime> time_, fixed_since_;
+    std::optional<GpsTime> time_, fixed_since_, unfixed_since_;
+    double length_m_ = 0;                           // of the baseline
+    bool hopeless_ = false;                         // what is known of the ambiguities keeps them from being whole
     Seconds passed_;                                // since the epoch before
     int misfits_ = 0;                               // epochs in a row in which most phases did not fit
     double misfit_squares_ = 0, misfit_count_ = 0;  // of this epoch's phases, in their expected variances
