@@ -54,8 +54,8 @@ DbHz reported_cn0(DbHz cn0, Decibels resolution) {
 }
 
 int glonass_channel_of(const SignalArrival& signal) {
-    const bool first = signal.signal == Signal::g1;
-    const double base = first ? 1602e6 : 1246e6, step = first ? 562.5e3 : 437.5e3;
+    const double base = carrier_frequency(signal.signal).value();
+    const double step = carrier_frequency(signal.signal, 1).value() - base;
     return static_cast<int>(std::lround((signal.carrier.value() - base) / step));
 }
 

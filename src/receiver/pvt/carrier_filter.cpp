@@ -80,12 +80,12 @@ void CarrierFilter::State::begin_ambiguity(const SingleDifference& d, GpsTime ti
                    square(ambiguity_deviation_m / d.wavelength_m));
 }
 
-void CarrierFilter::State::predict(const Spacing& spacing, Seconds passed) {
+void CarrierFilter::State::predict(const Spacing& spacing) {
     for (const Kind axis : {Kind::place_x, Kind::place_y, Kind::place_z})
         state_.restart(state_.index({axis}), 0, square(place_deviation_m));
-    const double wet_left = std::exp(-passed.value() / p_.wet_memory.value());
-    const double ionosphere_left = std::exp(-passed.value() / p_.ionosphere_memory.value());
-    const double echo_lost = -2 * std::expm1(-passed.value() / p_.phase_memory.value());
+    const double wet_left = std::exp(-passed_.value() / p_.wet_memory.value());
+    const double ionosphere_left = std::exp(-passed_.value() / p_.ionosphere_memory.value());
+    const double echo_lost = -2 * std::expm1(-passed_.value() / p_.phase_memory.value());
     for (Index i = 0; i < state_.size(); ++i) {
         const StateName& name = state_.names()[static_cast<std::size_t>(i)];
         if (name.kind == Kind::wet) state_.relax(i, wet_left, variance_of(name, spacing));
@@ -134,8 +134,8 @@ GroupEquations CarrierFilter::State::equations(const Group& group, bool phase, S
     return e;
 }
 
-void CarrierFilter::State::use_codes(const Group& group, Seconds passed) {
-    const GroupEquations e = equations(group, false, passed);
+void CarrierFilter::State::use_codes(const Group& group) {
+    const GroupEquations e = equations(group, false, passed_);
     state_.absorb(e.design, e.misfit, e.noise);
     for (const SingleDifference* d : group)
         if (settled(*d)) tracked_.at(ambiguity_of(*d)).fresh = false;
@@ -195,11 +195,11 @@ std::optional<CarrierOffset> CarrierFilter::State::update(std::span<const Single
     if (satellites.size() < least_satellites) return std::nullopt;
     time_ = time;
     arrange(present_, spacing, time);
-    predict(spacing, passed_);
+    predict(spacing);
     std::erase_if(groups_, [](const auto& group) { return group.second.size() < 2; });
     for (auto& [name, group] : groups_) {
         std::ranges::stable_sort(group, std::ranges::greater(), [](const auto* d) { return d->elevation; });
-        use_codes(group, passed_);
+        use_codes(group);
     }
     std::size_t fitting = 0;  // groups
     for (const auto& [name, group] : groups_)

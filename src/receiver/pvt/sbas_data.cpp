@@ -13,6 +13,13 @@ constexpr int any_issue = 3;  // of a bound, whatever its correction
 
 bool is_fresh(GpsTime then, GpsTime now, Seconds lasts) { return difference(now, then) <= lasts; }
 
+// Of a number in a mask, whose numbers ascend.
+std::optional<std::size_t> place_in(const std::vector<int>& mask, int number) {
+    const auto found = std::ranges::lower_bound(mask, number);
+    if (found == mask.end() || *found != number) return std::nullopt;
+    return static_cast<std::size_t>(found - mask.begin());
+}
+
 template <class... Cases>
 struct Overloaded : Cases... {
     using Cases::operator()...;
@@ -84,13 +91,9 @@ void SbasData::take_long_term(const SbasLongTermHalf& half, GpsTime time) {
 }
 
 std::optional<std::size_t> SbasData::index_of(SatelliteId satellite, GpsTime time) const {
-    std::optional<std::size_t> index;
     const std::optional<int> slot = sbas_mask_slot(satellite);
-    if (!slot || !mask_ || !is_fresh(mask_->time, time, mask_lasts)) return index;
-    const SbasPrnMask& mask = mask_->message;
-    const auto found = std::lower_bound(mask.slots.begin(), mask.slots.end(), *slot);
-    if (found != mask.slots.end() && *found == *slot) index = static_cast<std::size_t>(found - mask.slots.begin());
-    return index;
+    if (!slot || !mask_ || !is_fresh(mask_->time, time, mask_lasts)) return std::nullopt;
+    return place_in(mask_->message.slots, *slot);
 }
 
 std::optional<SbasCorrection> SbasData::correction(SatelliteId satellite, GpsTime time) const {
@@ -127,13 +130,11 @@ std::optional<double> SbasData::delay(const SbasGridPoint& point, GpsTime time) 
     const SbasMaskPlace place = sbas_mask_place(point);
     const auto mask = grid_masks_.find(place.band);
     if (mask == grid_masks_.end() || !is_fresh(mask->second.time, time, grid_mask_lasts)) return std::nullopt;
-    const auto& points = mask->second.message.points;
-    const auto found = std::ranges::lower_bound(points, place.number);
-    if (found == points.end() || *found != place.number) return std::nullopt;
-    const auto index = static_cast<std::size_t>(found - points.begin());
-    const auto block = grid_.find({place.band, static_cast<int>(index / SbasIonosphere::size)});
+    const std::optional<std::size_t> index = place_in(mask->second.message.points, place.number);
+    if (!index) return std::nullopt;
+    const auto block = grid_.find({place.band, static_cast<int>(*index / SbasIonosphere::size)});
     if (block == grid_.end() || block->second.message.iodi != mask->second.message.iodi) return std::nullopt;
-    const SbasGridDelay& told = block->second.message.points[index % SbasIonosphere::size];
+    const SbasGridDelay& told = block->second.message.points[*index % SbasIonosphere::size];
     const bool usable = is_fresh(block->second.time, time, grid_lasts) && told.givei != givei_not_monitored;
     return usable ? told.vertical_m : std::nullopt;
 }

@@ -26,16 +26,21 @@ BitWriter d1_toe_field(const KeplerEphemeris& r) {
     return bits;
 }
 
-void put_d1_clock(BitWriter& bits, const KeplerEphemeris& r, const KlobucharCoefficients& c, GpsTime end) {
+// What D1 and D2 both begin with. @param start of the subframe
+void put_state_and_delays(BitWriter& bits, const KeplerEphemeris& r, const KlobucharCoefficients& c, GpsTime start) {
     constexpr double delay_step = 1e-10;
     bits.put(r.health_bits_clear() ? 0 : 1, 1);
     bits.put_signed(r.iodc, 5);
     bits.put_signed(lnav_accuracy_index(r.accuracy_m), 4);
-    bits.put_signed(bdt_week_and_tow(end - std::chrono::seconds(6)).week, 13);
+    bits.put_signed(bdt_week_and_tow(start).week, 13);
     put_scaled_unsigned(bits, bdt_tow(r.toc), 17, d1_time_step_s);
     put_scaled(bits, r.tgd, 10, delay_step);
     put_scaled(bits, r.tgd2, 10, delay_step);
     put_klobuchar(bits, c);
+}
+
+void put_d1_clock(BitWriter& bits, const KeplerEphemeris& r, const KlobucharCoefficients& c, GpsTime end) {
+    put_state_and_delays(bits, r, c, end - std::chrono::seconds(6));
     put_scaled(bits, r.af2, 11, power_of_two(-66));
     put_scaled(bits, r.af0, 24, power_of_two(-33));
     put_scaled(bits, r.af1, 22, power_of_two(-50));
@@ -93,16 +98,8 @@ constexpr int d2_data_bits = 72, d2_bits_before_a0 = 38, d2_reserved_words = 5;
 
 // The fields of the ten pages in their order, without what is reserved.
 BitWriter d2_fields(const KeplerEphemeris& r, const KlobucharCoefficients& c, GpsTime start) {
-    constexpr double delay_step = 1e-10;
     BitWriter bits;
-    bits.put(r.health_bits_clear() ? 0 : 1, 1);
-    bits.put_signed(r.iodc, 5);
-    bits.put_signed(lnav_accuracy_index(r.accuracy_m), 4);
-    bits.put_signed(bdt_week_and_tow(start).week, 13);
-    put_scaled_unsigned(bits, bdt_tow(r.toc), 17, d1_time_step_s);
-    put_scaled(bits, r.tgd, 10, delay_step);
-    put_scaled(bits, r.tgd2, 10, delay_step);
-    put_klobuchar(bits, c);
+    put_state_and_delays(bits, r, c, start);
     put_scaled(bits, r.af0, 24, power_of_two(-33));
     put_scaled(bits, r.af1, 22, power_of_two(-50));
     put_scaled(bits, r.af2, 11, power_of_two(-66));

@@ -111,23 +111,25 @@ SbasFastCorrection SbasSystemService::fast_of(std::size_t index, GpsTime time) {
     return {found->second.range_m, found->second.udrei};
 }
 
-SbasFastCorrections SbasSystemService::fast_block(const SbasSlot& slot, GpsTime time) {
-    SbasFastCorrections m;
+// What messages 2 to 5 and 24 both begin with.
+template <class Message>
+void SbasSystemService::put_fast(Message& m, const SbasSlot& slot, GpsTime time) {
     m.block = slot.block;
     m.iodf = slot.iodf;
     m.iodp = sbas_issue;
     for (std::size_t i = 0; i < m.satellites.size(); ++i)
         m.satellites[i] = fast_of(static_cast<std::size_t>(slot.block) * sbas_block + i, time);
+}
+
+SbasFastCorrections SbasSystemService::fast_block(const SbasSlot& slot, GpsTime time) {
+    SbasFastCorrections m;
+    put_fast(m, slot, time);
     return m;
 }
 
 SbasMixedCorrections SbasSystemService::mixed(const SbasSlot& slot, GpsTime time) {
     SbasMixedCorrections m;
-    m.block = slot.block;
-    m.iodf = slot.iodf;
-    m.iodp = sbas_issue;
-    for (std::size_t i = 0; i < m.satellites.size(); ++i)
-        m.satellites[i] = fast_of(static_cast<std::size_t>(slot.block) * sbas_block + i, time);
+    put_fast(m, slot, time);
     m.long_term = long_term(static_cast<std::size_t>(slot.turn) * per_half, time, true);
     return m;
 }

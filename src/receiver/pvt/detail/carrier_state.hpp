@@ -49,13 +49,13 @@ private:
 
     [[nodiscard]] double variance_of(const StateName& name, const Spacing& spacing) const;
     void arrange(std::span<const SingleDifference> differences, const Spacing& spacing, GpsTime time);
-    void predict(const Spacing& spacing, Seconds passed);
+    void predict(const Spacing& spacing);
     void begin_ambiguity(const SingleDifference& d, GpsTime time, Seconds tracked);
     [[nodiscard]] Eigen::RowVectorXd row_of(const SingleDifference& d, bool phase) const;
     [[nodiscard]] bool settled(const SingleDifference& d) const;
     [[nodiscard]] double code_weakness(const SingleDifference& d, Seconds passed) const;
     [[nodiscard]] GroupEquations equations(const Group& group, bool phase, Seconds passed) const;
-    void use_codes(const Group& group, Seconds passed);
+    void use_codes(const Group& group);
     bool use_phases(Group group, GpsTime time);
     [[nodiscard]] double misfit_of_codes() const;
     [[nodiscard]] std::vector<AmbiguityPair> pairs(double most_variance, Seconds tracked) const;

@@ -35,6 +35,8 @@ private:
     [[nodiscard]] static std::vector<Band> bands_of(const SbasServiceArea& area);
     [[nodiscard]] SbasTraffic traffic(int prn) const;
     [[nodiscard]] SbasFastCorrection fast_of(std::size_t index, GpsTime time);
+    template <class Message>
+    void put_fast(Message& m, const SbasSlot& slot, GpsTime time);
     [[nodiscard]] SbasFastCorrections fast_block(const SbasSlot& slot, GpsTime time);
     [[nodiscard]] SbasMixedCorrections mixed(const SbasSlot& slot, GpsTime time);
     [[nodiscard]] SbasIntegrity integrity(const SbasSchedule& schedule, GpsTime start, GpsTime time);
