@@ -27,9 +27,8 @@ constexpr std::string_view log_header = "time_utc,host,key,number,attempt,outcom
 // What an attempt was like; never part of a result.
 std::string log_line(const PlannedRun& run, const JobOutcome& outcome, std::string_view what, std::string_view detail) {
     static const std::string host = first_line_of("/proc/sys/kernel/hostname");
-    return fmt::format("{},{},{},{},{},{},{:.3f},{}\n", format_utc(to_utc(wall_clock(), LeapSeconds::announced())),
-                       table_cell(host), run.key, run.number, outcome.attempt, what, outcome.seconds,
-                       table_cell(detail));
+    return fmt::format("{},{},{},{},{},{},{:.3f},{}\n", utc_text(wall_clock(), 3), table_cell(host), run.key,
+                       run.number, outcome.attempt, what, outcome.seconds, table_cell(detail));
 }
 
 std::string first_failed(const RunResult& result, const ResultColumns& columns) {

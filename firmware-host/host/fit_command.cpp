@@ -170,8 +170,6 @@ FitConditions conditions_of(const StandingLog& log, const FitOptions& options) {
     return conditions;
 }
 
-std::string second_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
-
 std::string figures_text(const SampleStatistics& s) {
     return fmt::format("mean {:.2f} m, standard deviation {:.2f} m", s.mean, s.std);
 }
@@ -188,7 +186,7 @@ ComparisonPercent percent_of(const SampleStatistics& model, const StandingLog& l
 void print_log(const StandingLog& log) {
     const Geodetic& at = log.place;
     fmt::print("log         {}: {} fixes in {:.0f} s from {}, at rest at {:.7f}, {:.7f}, {:.2f} m\n",
-               on_a_terminal(log.series.name), log.series.fixes(), log.length.value(), second_text(*log.start),
+               on_a_terminal(log.series.name), log.series.fixes(), log.length.value(), utc_text(*log.start),
                at.latitude.deg(), at.longitude.deg(), at.height.above_ellipsoid.value());
     static constexpr std::string_view about[] = {"its own truth", "the reference", "its own mean"};
     fmt::print("            horizontal error about {}: {}\n", about[static_cast<std::size_t>(log.errors.reference)],
@@ -245,7 +243,7 @@ Result<FitResult> compute(const FitLogs& logs, const FitOptions& options, FitPro
 // The fitted model where and when another log was made, beside what the preset makes of that, and the run that was
 // fitted as it stands.
 void print_check(const StandingLog& log, const BaselineRun& run, const SampleStatistics& fitted_run) {
-    fmt::print("check       {} ({}): {}\n", on_a_terminal(log.series.name), second_text(*log.start),
+    fmt::print("check       {} ({}): {}\n", on_a_terminal(log.series.name), utc_text(*log.start),
                figures_text(log.horizontal));
     const BaselineFractions preset = BaselineFractions::calibrated();
     fmt::print("            calibrated: {}\n", percent_of(figures_of(run.horizontal_with(preset)), log).text());

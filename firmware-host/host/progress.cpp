@@ -91,7 +91,7 @@ void Progress::show(const Status& status, const Emulator& emulator) {
     if (on_screen_ && now_ns - shown_ns_ < pause_ns) return;
     shown_ns_ = now_ns;
 
-    std::string line = format_utc(to_utc(status.now, LeapSeconds::announced()), 0);
+    std::string line = utc_text(status.now);
     for (const std::string& fix : fixes_)
         if (!fix.empty()) line += "  " + fix;
     line += fmt::format("  late {:.2f} ms", static_cast<double>(status.lateness.count()) * 1e-6);

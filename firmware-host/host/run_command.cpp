@@ -211,8 +211,6 @@ Action add_simulate_command(CLI::App& app) {
 
 namespace {
 
-std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
-
 void print_receiver(const ReceiverEntry& entry, const Station& station, bool of_several) {
     const firmware::Receiver& receiver = station.receiver();
     fmt::print("receiver    {}{} at {} baud, {:g} Hz\n", of_several ? station.name() + ": " : "", receiver.board().name,

@@ -27,11 +27,10 @@ struct ScenarioFromOptions {
 void print_summary(const ObservedLog& log, const LogEvents& events, const LogScenario& made) {
     static constexpr std::string_view names[] = {"outages",    "silences",        "changes of the type of fix",
                                                  "C/N0 drops", "weak satellites", "lost satellites"};
-    const auto utc = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 3); };
     fmt::print("log         {}, {}{}\n", log.name, log.format, log.receiver.empty() ? "" : ", " + log.receiver);
     fmt::print("epochs      {} from {} to {}, every {:g} s, {} with a place\n", log.epochs.size(),
-               utc(log.epochs.front().time), utc(log.epochs.back().time), to_seconds(events.period).value(),
-               made.places);
+               utc_text(log.epochs.front().time, 3), utc_text(log.epochs.back().time, 3),
+               to_seconds(events.period).value(), made.places);
     for (std::size_t kind = 0; kind < std::size(names); ++kind) {
         std::size_t count = 0;
         double seconds = 0;

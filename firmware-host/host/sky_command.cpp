@@ -93,9 +93,8 @@ int print_tracks(const SkyOptions& options, const World& world) {
     const auto tracks =
         satellite_tracks(world.simulation.navigation(), {world.start, Seconds(options.tracks_h * 3600), Seconds(step)});
     if (options.format == "svg")
-        fmt::print("{}",
-                   track_plot_svg(tracks, fmt::format("Satellite tracks in ECEF over {:g} h from {}", options.tracks_h,
-                                                      format_utc(to_utc(world.start, LeapSeconds::announced()), 0))));
+        fmt::print("{}", track_plot_svg(tracks, fmt::format("Satellite tracks in ECEF over {:g} h from {}",
+                                                            options.tracks_h, utc_text(world.start))));
     else
         fmt::print("{}", tracks_csv(tracks));
     return 0;

@@ -49,8 +49,7 @@ constexpr std::string_view solved_header =
 // @param velocity_known a file may hold no Dopplers
 std::string solved_row(const Fix& fix, bool velocity_known) {
     const WeekAndTow gps = week_and_tow(fix.time);
-    std::string row = fmt::format("{},{},{:.3f},", format_utc(to_utc(fix.time, LeapSeconds::announced())), gps.week,
-                                  gps.tow_seconds());
+    std::string row = fmt::format("{},{},{:.3f},", utc_text(fix.time, 3), gps.week, gps.tow_seconds());
     if (!fix.has_position()) return row + fmt::format(",,,,,,,,{},0,,,,,,,,\n", fix_type_name(fix.type));
     row += fmt::format("{:.9f},{:.9f},{:.4f},", fix.position.latitude.deg(), fix.position.longitude.deg(),
                        fix.position.height.above_ellipsoid.value());
@@ -105,9 +104,8 @@ void warn_of_span(const ObservationFile& file, const std::optional<TimeSpan>& sp
                   const Messages& messages) {
     const GpsTime first = file.epochs.front().receive_time, last = file.epochs.back().receive_time;
     if (!span || (first >= span->first && last <= span->last)) return;
-    const auto text = [](GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); };
     messages.warning(fmt::format("the observations of {} to {} are not all in the time of the {}, {} to {}",
-                                 text(first), text(last), orbits, text(span->first), text(span->last)));
+                                 utc_text(first), utc_text(last), orbits, utc_text(span->first), utc_text(span->last)));
 }
 
 // From the first row of any satellite to the last.

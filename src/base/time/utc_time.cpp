@@ -274,6 +274,10 @@ std::string format_utc(const UtcTime& utc, int decimals) {
     return text + "Z";
 }
 
+std::string utc_text(GpsTime time, int decimals) {
+    return format_utc(to_utc(time, LeapSeconds::announced()), decimals);
+}
+
 std::optional<std::int64_t> week_of_date(const UtcTime& date, Nanoseconds tow) {
     if (!is_calendar_time(date)) return std::nullopt;
     constexpr std::chrono::seconds half{seconds_per_week / 2};

@@ -92,6 +92,8 @@ UtcTime utc_of_local(const UtcTime& local, int minutes);
 UtcTime midnight_of(const UtcTime& day, int days_later);
 /// ISO 8601 with `decimals` (0 … 9) digits of fraction, cut off and not rounded as a clock shows them, and a final Z.
 std::string format_utc(const UtcTime& utc, int decimals = 3);
+/// The same of an instant, by the announced leap seconds.
+std::string utc_text(GpsTime time, int decimals = 0);
 
 /// The GPS week in which a time of week is nearest to a date that was told with it, which may be of a little earlier or
 /// later; nothing for what is no calendar time. @param tow of GPS, within a week

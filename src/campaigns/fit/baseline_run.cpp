@@ -82,9 +82,9 @@ std::string baseline_scenario(const FitConditions& conditions, const BaselineFra
         "[trajectory]\nkind = \"fixed\"\nat = [{:.9f}, {:.9f}, {:.4f}]\n\n"
         "[model]\nname = \"baseline\"\n\n[model.baseline]\niono_fraction = {:.6g}\ntropo_fraction = {:.6g}\n\n"
         "[[receiver]]\nrate_hz = 1\n",
-        remarks, format_utc(to_utc(conditions.start, LeapSeconds::announced()), 3),
-        std::ceil(conditions.length.value()), conditions.seed, navigation_text(conditions.navigation),
-        at.latitude.deg(), at.longitude.deg(), at.height.above_ellipsoid.value(), fractions.iono, fractions.tropo);
+        remarks, utc_text(conditions.start, 3), std::ceil(conditions.length.value()), conditions.seed,
+        navigation_text(conditions.navigation), at.latitude.deg(), at.longitude.deg(),
+        at.height.above_ellipsoid.value(), fractions.iono, fractions.tropo);
 }
 
 std::vector<double> BaselineRun::horizontal_with(const BaselineFractions& other) const {
@@ -121,8 +121,7 @@ Result<BaselineRun> run_baseline(const FitConditions& conditions, const Baseline
         return fail(ErrorCode::input,
                     fmt::format("{}: the model has {} fixes with these orbits at {}; expected the day's merged "
                                 "file, of which the model takes the records of the two hours before",
-                                run.navigation, run.errors.horizontal.size(),
-                                format_utc(to_utc(conditions.start, LeapSeconds::announced()), 0)));
+                                run.navigation, run.errors.horizontal.size(), utc_text(conditions.start)));
     return run;
 }
 

@@ -114,8 +114,8 @@ Result<LogScenario> scenario_of_log(const ObservedLog& log, const LogEvents& eve
         "nominal\n"
         "# GPS constellation until [sky] names the navigation data of that day.\n"
         "[run]\nstart = \"{}\"\nduration_s = {}\n\n{}\n{}",
-        plain_text(log.name), log.format, log.epochs.size(), format_utc(to_utc(start, LeapSeconds::announced()), 9),
-        seconds_text(duration), trajectory_text(log, made.places), receiver_text(log, events.period));
+        plain_text(log.name), log.format, log.epochs.size(), utc_text(start, 9), seconds_text(duration),
+        trajectory_text(log, made.places), receiver_text(log, events.period));
     for (const LogEvent& event : events.events)
         made.scenario += fault_text(event);
     return made;

@@ -87,6 +87,7 @@ void Augmentation::correct(RangeEquation& equation) const {
     const double ratio = carrier_frequency_l1 / equation.carrier.value();
     const Metres ionosphere = *delay * (ratio * ratio);
     equation.pseudorange -= ionosphere;
+    equation.grid = ionosphere;
     equation.carrier = Hertz(0);
     const std::optional<SbasCorrection> told = data.correction(equation.satellite, time_);
     if (!told) return;

@@ -30,7 +30,7 @@ ExpectedError expected_error(const SinglePoint& solution, const AccuracyParamete
         if (!r.used) continue;
         const double delay = solution.ionosphere_doubt * r.ionosphere.value();
         const double away = gradient_arm(r.direction.elevation);
-        ionosphere.add(r, parameters.ionosphere_share * delay);
+        ionosphere.add(r, parameters.ionosphere_share * delay + parameters.grid_share * r.grid.value());
         north.add(r, parameters.ionosphere_tilt * delay * away * std::cos(r.direction.azimuth.rad()));
         east.add(r, parameters.ionosphere_tilt * delay * away * std::sin(r.direction.azimuth.rad()));
         troposphere.add(r, parameters.troposphere_share * r.troposphere.value());

@@ -83,6 +83,7 @@ struct AccuracyParameters {
     double position_scale = 1;
     double velocity_scale = 1;
     double ionosphere_share = 0.38;   ///< σ of what the correction of the ionosphere is off by, of it, for all alike
+    double grid_share = 0.1;          ///< the same of what SBAS tells of the ionosphere
     double ionosphere_tilt = 0.15;    ///< the same towards north and towards east, for a pierce point 9° away
     double troposphere_share = 0.02;  ///< σ of what the correction of the troposphere is off by, of it, for all alike
     /// Delays that are there and that the receiver is told not to correct: the whole of each is expected, 1 σ.

@@ -285,12 +285,13 @@ void Adjustment::tell_ranges(const ClockMeans& clocks, SinglePoint& solution) co
         r.direction = w.direction;
         r.line = w.line;
         r.satellite = Position<Ecef>(w.satellite);
-        const Velocity<Ecef>& velocity = equations_[solution.ranges.size()].transmitter.velocity;
-        r.satellite_velocity = Velocity<Ecef>(turned_by(velocity.vector(), w.travel_s));
+        const RangeEquation& e = equations_[solution.ranges.size()];
+        r.satellite_velocity = Velocity<Ecef>(turned_by(e.transmitter.velocity.vector(), w.travel_s));
         r.used = w.weight > 0 && solution.clocks[w.clock].has_value();
         if (solution.clocks[w.clock]) r.residual = Metres(w.misfit - c.misfit);
-        r.carrier = equations_[solution.ranges.size()].carrier;
+        r.carrier = e.carrier;
         r.ionosphere = w.ionosphere;
+        r.grid = e.grid;
         r.troposphere = w.troposphere;
         if (r.used) {
             const Vector3d row = -w.line - c.row;

@@ -36,6 +36,7 @@ struct RangeEquation {
     bool selected = true;                       ///< the receiver uses this satellite at all
     std::optional<AppliedSbas> sbas{};          ///< its corrections, where it has been corrected by them
     std::optional<MeasuredDelay> ionosphere{};  ///< by two carriers, beside what the model says
+    Metres grid{};                              ///< of the ionosphere, taken off by what SBAS tells of it
 };
 
 /// A height that is known from elsewhere.
@@ -61,7 +62,8 @@ struct RangeOutcome {
     Metres residual;                 ///< corrected pseudorange − computed one; without a clock to compare with, 0
     double variance = 0;             ///< m², as weighted
     double cofactor = 0;             ///< m², variance of the residual's estimate
-    Metres ionosphere, troposphere;  ///< that were taken off
+    Metres ionosphere, troposphere;  ///< that were taken off by models
+    Metres grid;                     ///< of the ionosphere, by what SBAS tells of it
     Hertz carrier;                   ///< 0 for a combination that the ionosphere does not touch
     Eigen::Vector3d line;            ///< unit vector receiver to satellite, ECEF of reception
     /// What one metre more of this pseudorange does to the position, ECEF, and to the reference clock; 0 if not used.

@@ -240,7 +240,7 @@ std::string Session::config_text() const {
                     {"model", model_name(scenario_.model)},
                     {"seed", scenario_.run.seed},
                     {"digest", assembly_.digest},
-                    {"start_utc", format_utc(to_utc(assembly_.start, LeapSeconds::announced()))},
+                    {"start_utc", utc_text(assembly_.start, 3)},
                     {"start_sim_ns", start_sim_ns_},
                     {"receivers", std::move(receivers)},
                     {"warnings", assembly_.warnings},

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t longest_dialogue_text = 400, most_hex_bytes = 48;
 constexpr std::uint64_t recent_dialogue_lines = 64;
 
-Json utc_json(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
+Json utc_json(GpsTime time) { return utc_text(time, 3); }
 
 template <class T, class Make>
 Json or_null(const std::optional<T>& value, Make make) {

@@ -148,8 +148,7 @@ Result<void> check_end(const RunSettings& run, GpsTime start) {
     const double end_s = difference(start, GpsTime{}).value() + run.duration.value_or(Seconds(0)).value();
     if (end_s < latest_s) return {};
     return fail(ErrorCode::usage, fmt::format("a run of {:g} s from {} ends after 2269; expected a shorter one",
-                                              run.duration.value_or(Seconds(0)).value(),
-                                              format_utc(to_utc(start, LeapSeconds::announced()), 0)));
+                                              run.duration.value_or(Seconds(0)).value(), utc_text(start)));
 }
 
 // The article's sky is GPS alone, and its nominal one has no others.

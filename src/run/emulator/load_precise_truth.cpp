@@ -11,19 +11,17 @@
 namespace skyloop::inline run {
 namespace {
 
-std::string gpst_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
-
 // What the key is refused for, at its place.
 tl::unexpected<Error> refuse_products(const Scenario& scenario, std::string_view why) {
     return fail(ErrorCode::usage, fmt::format("{}{}", told_place(scenario, "sky.orbits", "sky.orbits"), why));
 }
 
 // What stands in the way whatever the files hold.
-Result<void> check_use(const Scenario& scenario) {
+Result<void> check_use(const Scenario& scenario, const LoadedNavigation& loaded) {
     if (scenario.model.sensor_model)
         return refuse_products(scenario,
                                "a sensor model takes the records for the truth; expected model.name = \"modern\"");
-    if (scenario.sky.navigation.empty())
+    if (loaded.files.empty())
         return refuse_products(scenario,
                                "the nominal sky is of no day; expected sky.navigation with the records of that day");
     if (scenario.sky.rebase_navigation)
@@ -94,13 +92,12 @@ Result<void> check_span(const Scenario& scenario, const TimeSpan& span, LoadedNa
     const GpsTime end = advanced(loaded.start, scenario.run.duration.value_or(Seconds(0)));
     if (loaded.start < span.first || end > span.last)
         return refuse_products(
-            scenario,
-            fmt::format("the run, {} to {}, is not within the time of the products; expected {} to {}",
-                        gpst_text(loaded.start), gpst_text(end), gpst_text(span.first), gpst_text(span.last)));
+            scenario, fmt::format("the run, {} to {}, is not within the time of the products; expected {} to {}",
+                                  utc_text(loaded.start), utc_text(end), utc_text(span.first), utc_text(span.last)));
     if (!scenario.run.duration)
         loaded.warnings.push_back(
             fmt::format("the run has no end, and its precise products reach to {}: their satellites are gone then",
-                        gpst_text(span.last)));
+                        utc_text(span.last)));
     return {};
 }
 
@@ -108,7 +105,7 @@ Result<void> check_span(const Scenario& scenario, const TimeSpan& span, LoadedNa
 
 Result<void> load_precise_truth(const Scenario& scenario, LoadedNavigation& loaded) {
     if (scenario.sky.precise.orbits.empty()) return {};
-    if (const auto checked = check_use(scenario); !checked) return fail(checked.error());
+    if (const auto checked = check_use(scenario, loaded); !checked) return fail(checked.error());
     auto precise = read_products(scenario);
     if (!precise) return fail(precise.error());
     const std::optional<TimeSpan> span = precise->span();

@@ -97,9 +97,8 @@ std::vector<std::string> track_details(const FileSettings& file, const CurveRepo
     const Track& track = *file.track;
     std::vector<std::string> details{fmt::format("format: {}", track.format.empty() ? "table of text" : track.format)};
     if (track.origin)
-        details.push_back(fmt::format(
-            "times: {} to {}", format_utc(to_utc(*track.origin + track.points.front().time, LeapSeconds::announced())),
-            format_utc(to_utc(*track.origin + track.points.back().time, LeapSeconds::announced()))));
+        details.push_back(fmt::format("times: {} to {}", utc_text(*track.origin + track.points.front().time, 3),
+                                      utc_text(*track.origin + track.points.back().time, 3)));
     details.push_back("rows: " + rate_text(track));
     if (!file.gaps.empty()) details.push_back(fmt::format("gaps: {}", file.gaps.size()));
     if (report.stretches > 1) details.push_back(fmt::format("jumps: {}", report.stretches - 1));

@@ -43,7 +43,7 @@ std::optional<std::string> warning_of_last_map(const Scenario& scenario) {
     if (!maps || maps->maps.empty()) return std::nullopt;  // which load_ionosphere_maps() and check_coverage() tell
     return fmt::format(
         "{}: its maps reach to {}; the run has no end, and from then on the last of them holds, turned with the Sun",
-        file.string(), format_utc(to_utc(maps->maps.back().time, LeapSeconds::announced()), 0));
+        file.string(), utc_text(maps->maps.back().time));
 }
 
 namespace {

@@ -23,8 +23,6 @@ constexpr Nanoseconds first_fix_time = std::chrono::seconds(60);
 // Satellites rise and set slowly.
 constexpr Nanoseconds look_again = std::chrono::minutes(5);
 
-std::string sky_time_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
-
 // The first row of a recorded path.
 std::optional<Geodetic> first_place_of(const FileSettings& file, const DataFolders& folders) {
     const auto text = read_text_file(file.path);
@@ -107,7 +105,7 @@ constexpr std::string_view remedy = "--start moves the run, --rebase-nav the dat
 std::string scarcity(const Scenario& scenario, const NavigationData& data, const SolvableSky& sky, GpsTime start) {
     const bool told = scenario.run.start || scenario.run.start_now || scenario.sky.rebase_navigation;
     const bool hidden = sky.anywhere().solvable(data, start);
-    std::string text = told ? fmt::format("no fix is to be expected at the start, {}: ", sky_time_text(start))
+    std::string text = told ? fmt::format("no fix is to be expected at the start, {}: ", utc_text(start))
                             : "no fix is to be expected: ";
     text += fmt::format("too few satellites of {} ", system_list(sky));
     text += hidden ? fmt::format("with orbits stand above {:g} degrees at {:.4f}, {:.4f}", sky.mask.deg(),
@@ -182,7 +180,7 @@ std::vector<std::string> time_warnings(const Scenario& scenario, const Navigatio
     if (!span) return {};
     if (start < span->first || start > span->last)
         return {fmt::format("the run starts outside the navigation data, which spans {} to {}: no fix there; {}",
-                            sky_time_text(span->first), sky_time_text(span->last), remedy)};
+                            utc_text(span->first), utc_text(span->last), remedy)};
     std::vector<std::string> warnings;
     if (!sky.solvable(data, start)) warnings.push_back(scarcity(scenario, data, sky, start));
     if (!scenario.run.duration) return warnings;
@@ -191,7 +189,7 @@ std::vector<std::string> time_warnings(const Scenario& scenario, const Navigatio
     if (last && *last >= start && *last < end)
         warnings.push_back(
             fmt::format("the run outlasts the navigation data: after {}, too few satellites of {} have orbits; {}",
-                        sky_time_text(*last), system_list(sky), remedy));
+                        utc_text(*last), system_list(sky), remedy));
     return warnings;
 }
 

@@ -18,8 +18,6 @@
 namespace skyloop::inline run {
 namespace {
 
-std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
-
 // Fields of a file of comma-separated values, some of which have a row for each satellite and epoch of a run.
 class CsvRows {
 public:
@@ -158,7 +156,7 @@ std::string fix_row(const Trace& trace) {
     const WeekAndTow gps = week_and_tow(trace.truth.time);
     constexpr std::size_t usual_length = 500;
     CsvRows row(usual_length);
-    row.text(utc_text(trace.truth.time)).whole(gps.week).number(gps.tow_seconds(), 3);
+    row.text(utc_text(trace.truth.time, 3)).whole(gps.week).number(gps.tow_seconds(), 3);
     row.number(truth.latitude.deg(), 9).number(truth.longitude.deg(), 9);
     row.number(truth.height.above_ellipsoid.value(), 4);
     fix.has_position() ? append_solution(row, trace) : void(row.nothing(11));
@@ -172,7 +170,7 @@ std::string fix_row(const Trace& trace) {
 }
 
 std::string satellite_rows(const Trace& trace, bool precise) {
-    const std::string time = utc_text(trace.truth.time);
+    const std::string time = utc_text(trace.truth.time, 3);
     constexpr std::size_t usual_length = 300;  // of a row
     CsvRows rows(usual_length * trace.sky.satellites.size());
     for (std::size_t i = 0; i < trace.sky.satellites.size(); ++i) {

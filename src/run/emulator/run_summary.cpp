@@ -157,7 +157,7 @@ std::string run_summary(const Scenario& scenario, const Assembly& assembly, std:
         {"model", model_name(scenario.model)},
         {"board", emulator.receiver().board().name},
         {"navigation", emulator.simulation().navigation().description()},
-        {"start_utc", format_utc(to_utc(assembly.start, LeapSeconds::announced()))},
+        {"start_utc", utc_text(assembly.start, 3)},
         {"start_gps_ns", assembly.start.time_since_epoch().count()},
         {"ended", what != SummaryOf::beginning},
         {"cut", what == SummaryOf::cut_end},

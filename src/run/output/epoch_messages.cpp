@@ -33,7 +33,10 @@ Json if_known(const std::optional<T>& value, Make make) {
     return value ? Json(make(*value)) : Json(nullptr);
 }
 
-Json utc_text(GpsTime time, const LeapSeconds& leap_seconds) { return format_utc(to_utc(time, leap_seconds), 3); }
+// As the receiver believes.
+std::string believed_utc_text(GpsTime time, const LeapSeconds& leap_seconds) {
+    return format_utc(to_utc(time, leap_seconds), 3);
+}
 
 void add_place(Json& to, const Geodetic& place) {
     to["lat_deg"] = rounded(place.latitude.deg(), per_degree_of_place);
@@ -89,7 +92,7 @@ Json fix_json(const EpochRecord::Report& report) {
     const Fix& fix = report.fix;
     Json json{{"type", fix_type_name(fix.type)},
               {"ok", report.fix_ok},
-              {"time_utc", utc_text(fix.time, report.leap_seconds)},
+              {"time_utc", believed_utc_text(fix.time, report.leap_seconds)},
               {"leap_seconds", fix.leap_seconds},
               {"satellites_used", report.satellites_used},
               {"jamming_state", report.jamming_state},
@@ -161,7 +164,7 @@ std::string epoch_line(const EpochRecord& record) {
     Json json{{"schema", "skyloop-epoch/1"},
               {"receiver", record.receiver},
               {"epoch", record.number},
-              {"time_utc", utc_text(time, LeapSeconds::announced())},
+              {"time_utc", utc_text(time, 3)},
               {"gps_week", stamp.week},
               {"tow_s", decimal_seconds(stamp.tow)},
               {"truth", truth_json(record.truth)},

@@ -20,15 +20,13 @@ namespace {
 
 constexpr std::size_t most_events_looked_at = 10'000;  // what comes every millisecond comes for ever
 
-std::string check_utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
-
 template <class Entry>
 std::optional<std::string> early_time(std::string_view table, const std::vector<Entry>& entries, GpsTime start) {
     for (const Entry& entry : entries)
         if (entry.when.at_time && *entry.when.at_time < start)
             return entry.told_at +
                    fmt::format("[[{}]] '{}': at_utc is {}, before the start of the run; expected {} or later", table,
-                               entry.when.name, check_utc_text(*entry.when.at_time), check_utc_text(start));
+                               entry.when.name, utc_text(*entry.when.at_time, 3), utc_text(start, 3));
     return std::nullopt;
 }
 
@@ -49,7 +47,7 @@ std::optional<std::string> too_early_to_roll_over(const FaultEntry& fault, GpsTi
            fmt::format(
                "[[fault]] '{}': rollovers = {:g} leads to before 1980-01-06; expected {}a beginning at {} or "
                "later",
-               fault.when.name, rollovers, rollovers > 1 ? "fewer, or " : "", check_utc_text(first));
+               fault.when.name, rollovers, rollovers > 1 ? "fewer, or " : "", utc_text(first, 3));
 }
 
 // A mount point that is mistaken for another one is there.

@@ -16,8 +16,6 @@ namespace {
 
 constexpr std::string_view replacement = "\xEF\xBF\xBD";  // U+FFFD
 
-std::string utc_text(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced())); }
-
 std::size_t count_of(std::span<const Verdict> verdicts, Outcome outcome) {
     return static_cast<std::size_t>(
         std::count_if(verdicts.begin(), verdicts.end(), [outcome](const Verdict& v) { return v.outcome == outcome; }));
@@ -88,7 +86,7 @@ Json verdict_object(const Verdict& verdict) {
                 {"evidence", verdict.evidence},
                 {"run_time_s", verdict.run_time.value()}};
     if (verdict.decided_at) {
-        object["decided_at_utc"] = utc_text(*verdict.decided_at);
+        object["decided_at_utc"] = utc_text(*verdict.decided_at, 3);
         object["decided_at_gps_ns"] = verdict.decided_at->time_since_epoch().count();
     }
     return object;
@@ -116,9 +114,12 @@ std::string verdict_json(std::span<const Verdict> verdicts, const ReportedRun& r
     for (const Verdict& verdict : verdicts)
         list.push_back(verdict_object(verdict));
     const std::optional<bool> met = all_met(verdicts);
-    const Json report{{"scenario", run.scenario},         {"seed", run.seed},
-                      {"start_utc", utc_text(run.start)}, {"length_s", run.length.value()},
-                      {"met", met ? Json(*met) : Json()}, {"evidence", run.evidence},
+    const Json report{{"scenario", run.scenario},
+                      {"seed", run.seed},
+                      {"start_utc", utc_text(run.start, 3)},
+                      {"length_s", run.length.value()},
+                      {"met", met ? Json(*met) : Json()},
+                      {"evidence", run.evidence},
                       {"verdicts", std::move(list)}};
     return json_text(report, 2) + "\n";
 }
@@ -135,10 +136,10 @@ std::string junit_xml(std::span<const Verdict> verdicts, const ReportedRun& run)
     set(suite, "name", run.scenario);
     add_counts(suite, verdicts, run);
     // The time zone stays out: the form has none, and its readers take UTC.
-    set(suite, "timestamp", format_utc(to_utc(run.start, LeapSeconds::announced()), 0).substr(0, 19));
+    set(suite, "timestamp", utc_text(run.start).substr(0, 19));
     pugi::xml_node properties = suite.append_child("properties");
     add_property(properties, "seed", std::to_string(run.seed));
-    add_property(properties, "start_utc", utc_text(run.start));
+    add_property(properties, "start_utc", utc_text(run.start, 3));
     for (const std::string& file : run.evidence)
         add_property(properties, "evidence", file);
     for (const Verdict& verdict : verdicts)

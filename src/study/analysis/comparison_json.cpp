@@ -109,7 +109,7 @@ Json windows_json(const Comparison& comparison) {
     Json json = Json::array();
     for (const WindowComparison& w : comparison.windows) {
         Json row{{"first_sample", w.first_sample}};
-        row["time_utc"] = w.start ? Json(format_utc(to_utc(*w.start, LeapSeconds::announced()))) : Json(nullptr);
+        row["time_utc"] = w.start ? Json(utc_text(*w.start, 3)) : Json(nullptr);
         row["figures"] = figures_json(w.figures);
         row["against_a"] = percent_json(w.difference);
         json.push_back(std::move(row));

@@ -137,8 +137,7 @@ std::string windows_text(const Comparison& comparison) {
     std::vector<double> percents;
     for (std::size_t i = 0; i < comparison.windows.size(); ++i) {
         const WindowComparison& w = comparison.windows[i];
-        const std::string from = w.start ? format_utc(to_utc(*w.start, LeapSeconds::announced()), 0)
-                                         : fmt::format("sample {}", w.first_sample + 1);
+        const std::string from = w.start ? utc_text(*w.start) : fmt::format("sample {}", w.first_sample + 1);
         text += fmt::format("{:>6}  {:<22}{:>7}", i + 1, from, w.figures.n);
         for (const double figure : {w.figures.mean, w.figures.std, w.figures.p95})
             text += fmt::format("{:>9.3f}", figure);

@@ -32,10 +32,6 @@ std::optional<Dop> dop_of_used(const SkyListing& listing) {
     return dilution_of_precision(directions);
 }
 
-std::string time_text(GpsTime time, int decimals) {
-    return format_utc(to_utc(time, LeapSeconds::announced()), decimals);
-}
-
 // 359.96° is shown as 0.0°, not as 360.0°.
 double shown_azimuth(Angle azimuth, double step) {
     const double degrees = azimuth.deg();
@@ -118,7 +114,7 @@ std::string sky_text_heading(const SkyListing& listing, bool with_scene) {
     const WeekAndTow gps = week_and_tow(listing.time);
     std::string text =
         fmt::format("{}  (GPS week {}, {:.3f} s)  at {:.7f}, {:.7f}, {:.2f} m  mask {:.4g} deg\n",
-                    time_text(listing.time, 3), gps.week, gps.tow_seconds(), listing.place.latitude.deg(),
+                    utc_text(listing.time, 3), gps.week, gps.tow_seconds(), listing.place.latitude.deg(),
                     listing.place.longitude.deg(), listing.place.height.above_ellipsoid.value(), listing.mask.deg());
     text += fmt::format("{:<10}{:>9}{:>11}{:>12}{:>13}{:>11}{:>10}  {:<10}", "satellite", "azimuth", "elevation",
                         "range", "range rate", "Doppler", "C/N0", "health");
@@ -194,7 +190,7 @@ std::string sky_text(const SkyListing& listing) {
 
 std::string sky_json(const SkyListing& listing) {
     const WeekAndTow gps = week_and_tow(listing.time);
-    Json json{{"time_utc", time_text(listing.time, 3)}, {"gps_week", gps.week}, {"tow_s", gps.tow_seconds()}};
+    Json json{{"time_utc", utc_text(listing.time, 3)}, {"gps_week", gps.week}, {"tow_s", gps.tow_seconds()}};
     json["position"] = place_json(listing.place);
     json["mask_deg"] = listing.mask.deg();
     json["satellites"] = Json::array();
@@ -213,7 +209,7 @@ std::string sky_csv(std::span<const SkyListing> listings) {
         "time_utc,satellite,azimuth_deg,elevation_deg,range_m,range_rate_mps,doppler_hz,cn0_dbhz,healthy,used,"
         "toe_gps_week,toe_tow_s,iode,line_of_sight,paths,reflections,excess_m\n";
     for (const SkyListing& listing : listings) {
-        const std::string time = time_text(listing.time, 3);
+        const std::string time = utc_text(listing.time, 3);
         for (const SkyRow& row : listing.rows) {
             const SatelliteInView& s = row.view;
             const WeekAndTow toe = week_and_tow(s.toe);
@@ -240,9 +236,8 @@ std::string tracks_csv(std::span<const SatelliteTrack> tracks) {
     std::string text = "time_utc,satellite,x_m,y_m,z_m\n";
     for (const auto& [satellite, point] : rows) {
         const Eigen::Vector3d& p = point->position.vector();
-        fmt::format_to(std::back_inserter(text), "{},{},{:.3f},{:.3f},{:.3f}\n",
-                       format_utc(to_utc(point->time, LeapSeconds::announced())), to_string(satellite), p.x(), p.y(),
-                       p.z());
+        fmt::format_to(std::back_inserter(text), "{},{},{:.3f},{:.3f},{:.3f}\n", utc_text(point->time, 3),
+                       to_string(satellite), p.x(), p.y(), p.z());
     }
     return text;
 }

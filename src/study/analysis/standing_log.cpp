@@ -53,8 +53,7 @@ PlanSpans spans_of(const PositionErrors& plan, const FixTimes& times, double len
 std::string time_of_fix(const FixSeries& series, std::size_t index) {
     std::size_t fixes = 0;
     for (const FixSample& sample : series.samples)
-        if (sample.has_fix && fixes++ == index && series.dated && sample.time)
-            return format_utc(to_utc(*sample.time, LeapSeconds::announced()), 0);
+        if (sample.has_fix && fixes++ == index && series.dated && sample.time) return utc_text(*sample.time);
     return fmt::format("fix {}", index + 1);
 }
 

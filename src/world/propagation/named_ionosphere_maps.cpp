@@ -10,8 +10,6 @@
 namespace skyloop::inline world {
 namespace {
 
-std::string gps_day(GpsTime time) { return format_utc(to_utc(time, LeapSeconds::announced()), 0); }
-
 // A place without a value: a node of the grid, or one of those that a grid of less than the globe does not reach.
 std::optional<PiercePoint> hole_in(const IonosphereMaps& maps, const IonosphereMap& map) {
     const GridAxis &latitude = maps.latitude, &longitude = maps.longitude;
@@ -37,15 +35,15 @@ Result<void> check_coverage(const NamedIonosphereMaps& maps, const TimeSpan& run
     const GpsTime first = all.front().time, last = all.back().time;
     if (run.first < first || run.last > last)
         return fail(ErrorCode::input,
-                    fmt::format("{}: its maps span {} to {}; the run lasts from {} to {}", maps.file, gps_day(first),
-                                gps_day(last), gps_day(run.first), gps_day(run.last)));
+                    fmt::format("{}: its maps span {} to {}; the run lasts from {} to {}", maps.file, utc_text(first),
+                                utc_text(last), utc_text(run.first), utc_text(run.last)));
     for (const IonosphereMap& map : all) {
         const auto hole = hole_in(maps.maps, map);
         if (hole)
             return fail(ErrorCode::input,
                         fmt::format("{}: the map of {} has no value at latitude {:.2f}°, longitude {:.2f}°; expected "
                                     "maps of the whole globe",
-                                    maps.file, gps_day(map.time), hole->latitude.deg(), hole->longitude.deg()));
+                                    maps.file, utc_text(map.time), hole->latitude.deg(), hole->longitude.deg()));
     }
     return {};
 }

@@ -54,11 +54,12 @@ private:
 
 }  // namespace
 
-SatelliteMonitor::SatelliteMonitor(std::shared_ptr<const NavigationSource> navigation, SignalInSpaceError error,
-                                   const std::vector<Geodetic>& sites)
-    : navigation_(std::make_shared<GpsBroadcast>(std::move(navigation))), error_(std::move(error)) {
+SatelliteMonitor::SatelliteMonitor(Truth truth, const std::vector<Geodetic>& sites)
+    : navigation_(std::make_shared<GpsBroadcast>(std::move(truth.navigation))),
+      error_(std::move(truth.error)),
+      precise_(std::move(truth.precise)) {
     for (const Geodetic& site : sites)
-        sites_.push_back({{GpsTime(), to_ecef(site), Velocity<Ecef>(), site}});
+        sites_.push_back({{GpsTime(), to_ecef(site), Velocity<Ecef>(), site}, SkyObserver(precise_.get())});
 }
 
 // How much longer the present record's range is than that of the corrected one, its clock taken off.

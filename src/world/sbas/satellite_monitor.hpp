@@ -30,16 +30,20 @@ struct MonitoredSatellite {
 /// State: what each station has observed, the errors' processes, and the corrections of the last minute.
 class SatelliteMonitor {
 public:
-    /// @param error the truth's own, as every antenna has it
-    SatelliteMonitor(std::shared_ptr<const NavigationSource> navigation, SignalInSpaceError error,
-                     const std::vector<Geodetic>& sites);
+    /// What is true of the satellites, as every antenna of the run has it.
+    struct Truth {
+        std::shared_ptr<const NavigationSource> navigation;
+        SignalInSpaceError error;
+        std::shared_ptr<const PreciseTruth> precise{};  ///< null: the records, with `error` alone
+    };
+    SatelliteMonitor(Truth truth, const std::vector<Geodetic>& sites);
     /// Instants come in ascending order. Satellites that no station sees are absent.
     const std::map<SatelliteId, MonitoredSatellite>& at(GpsTime time);
 
 private:
     struct Site {
         TruthState truth;
-        SkyObserver observer{};
+        SkyObserver observer;
     };
     // What one station sees of a satellite against the corrected record.
     struct SeenError {
@@ -58,6 +62,7 @@ private:
 
     std::shared_ptr<const NavigationSource> navigation_;  // of GPS alone
     SignalInSpaceError error_;
+    std::shared_ptr<const PreciseTruth> precise_;
     std::vector<Site> sites_;
     std::optional<GpsTime> minute_, now_;
     std::map<SatelliteId, LongTerm> long_term_;

@@ -12,7 +12,7 @@ namespace skyloop::inline world {
 
 /// How much there is to send.
 struct SbasTraffic {
-    int fast_blocks = 1;             ///< of 13 satellites, the last one perhaps of fewer
+    int fast_blocks = 1;             ///< of 13 satellites, the last one perhaps of fewer; at most four
     bool mixed_last = false;         ///< the last block has at most six, and goes in message 24
     std::vector<int> grid_blocks{};  ///< of 15 points, of each band that is sent
     int long_term_messages = 0;      ///< 25
@@ -26,26 +26,25 @@ struct SbasSlot {
     int band = 0;           ///< of messages 18 and 26, counted among those that are sent
     int block = 0;          ///< of fast corrections, of message 26, or which message 25
     int iodf = 0;           ///< of fast corrections
-    std::int64_t turn = 0;  ///< of fast corrections: how often they have all been sent
+    std::int64_t turn = 0;  ///< of fast corrections: the number of their frame
 };
 
-/// Frames of six seconds: integrity (6), one message of fast corrections, and four of all others in a cycle: 1, 18 and
-/// 26 of each band, 25, 7, 9, 10, 17 and 27, once each. Under test the last of the four is message 0. So bounds come
-/// every six seconds, fast corrections every six for each block, at most 24, and a cycle of EGNOS takes 42 s: none is
-/// longer than the intervals of DO-229, table A-25 (6; 60 with degradation indicator 0; 120, and 300 of 17, 18, 26 and
-/// 27).
+/// Frames of six seconds: each block of fast corrections, then what comes next in a cycle of all others: 1, 6, 18 and
+/// 26 of each band, 25, 7, 9, 10, 17 and 27, once each. So fast corrections and their bounds come every six seconds,
+/// and a cycle of EGNOS takes a minute: nothing takes longer than the intervals of DO-229, table A-25 (bounds 6; 60
+/// with degradation indicator 0; 120, and 300 of 17, 18, 26 and 27). MSAS in RTKLIB's record ubx_20080526.ubx
+/// (test/data/rcvraw) begins each frame with 2, 3 and 4 as well, and sends 1 every 50 to 60 s. Under test message 0 is
+/// in the place of 2.
 class SbasSchedule {
 public:
     explicit SbasSchedule(SbasTraffic traffic);
     /// @param start of the message's second
     [[nodiscard]] SbasSlot at(GpsTime start) const;
-    /// What the last message of a block of fast corrections before a frame was numbered.
-    [[nodiscard]] int iodf_before(int block, GpsTime start) const;
-    /// Seconds in which all but fast corrections are sent once.
-    [[nodiscard]] int cycle_s() const;
+    /// What the fast corrections of a frame are numbered.
+    [[nodiscard]] static int iodf(GpsTime start);
 
 private:
-    [[nodiscard]] SbasSlot fast(int block, std::int64_t turn) const;
+    [[nodiscard]] SbasSlot fast(int block, GpsTime start) const;
 
     SbasTraffic traffic_;
     std::vector<SbasSlot> cycle_;

@@ -23,14 +23,15 @@ SbasMessage navigation_alone(const SbasEphemeris& record, GpsTime start) {
 class SbasServices : public SbasSource {
 public:
     SbasServices(const SbasWorld& world, IonosphereMonitor ionosphere)
-        : navigation_(world.navigation),
-          error_(world.parameters.signal_in_space_model, world.parameters.signal_in_space, world.context.seed),
+        : satellites_{world.navigation,
+                      {world.parameters.signal_in_space_model, world.parameters.signal_in_space, world.context.seed},
+                      world.context.precise},
           place_(world.place),
           ionosphere_(std::move(ionosphere)) {}
 
     std::optional<SbasWords> message(SatelliteId satellite, GpsTime end) override {
         const GpsTime start = end - std::chrono::seconds(1);
-        const auto record = navigation_->ephemeris(satellite, start);
+        const auto record = satellites_.navigation->ephemeris(satellite, start);
         if (!record || !std::holds_alternative<SbasEphemeris>(*record)) return std::nullopt;
         const auto& own = std::get<SbasEphemeris>(*record);
         const int prn = satellite.number + prn_of_first;
@@ -43,12 +44,11 @@ private:
     SbasSystemService& service(SbasSystem system) {
         const auto known = systems_.find(system);
         if (known != systems_.end()) return known->second;
-        return systems_.try_emplace(system, system, SbasSystemService::World{navigation_, error_, place_}, ionosphere_)
+        return systems_.try_emplace(system, system, SbasSystemService::World{satellites_, place_}, ionosphere_)
             .first->second;
     }
 
-    std::shared_ptr<const NavigationSource> navigation_;
-    SignalInSpaceError error_;
+    SatelliteMonitor::Truth satellites_;
     Geodetic place_;
     IonosphereMonitor ionosphere_;
     std::map<SbasSystem, SbasSystemService> systems_;

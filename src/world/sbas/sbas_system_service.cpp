@@ -60,11 +60,11 @@ SbasDegradation degradation() {
 
 SbasSystemService::SbasSystemService(SbasSystem system, const World& world, IonosphereMonitor& ionosphere)
     : system_(system),
-      navigation_(world.navigation),
+      navigation_(world.satellites.navigation),
       ionosphere_(ionosphere),
-      corrected_(corrected_satellites(*world.navigation)),
+      corrected_(corrected_satellites(*navigation_)),
       bands_(bands_of(sbas_service_area(system))),
-      monitor_(world.navigation, world.error, monitor_sites(sbas_service_area(system), world.place)) {}
+      monitor_(world.satellites, monitor_sites(sbas_service_area(system), world.place)) {}
 
 // All points of squares that the area touches.
 std::vector<SbasSystemService::Band> SbasSystemService::bands_of(const SbasServiceArea& area) {
@@ -134,11 +134,10 @@ SbasMixedCorrections SbasSystemService::mixed(const SbasSlot& slot, GpsTime time
     return m;
 }
 
-SbasIntegrity SbasSystemService::integrity(const SbasSchedule& schedule, GpsTime start, GpsTime time) {
+SbasIntegrity SbasSystemService::integrity(GpsTime start, GpsTime time) {
     SbasIntegrity m;
     for (std::size_t block = 0; block < m.iodf.size(); ++block)
-        if (block * sbas_block < corrected_.size())
-            m.iodf[block] = schedule.iodf_before(static_cast<int>(block), start);
+        if (block * sbas_block < corrected_.size()) m.iodf[block] = SbasSchedule::iodf(start);
     for (std::size_t i = 0; i < m.udrei.size(); ++i)
         m.udrei[i] = fast_of(i, time).udrei;
     return m;
@@ -254,10 +253,9 @@ SbasMessage SbasSystemService::made(const SbasSlot& slot, const SbasEphemeris& o
 SbasMessage SbasSystemService::message(int prn, const SbasEphemeris& own, GpsTime start) {
     auto known = schedules_.find(prn);
     if (known == schedules_.end()) known = schedules_.emplace(prn, SbasSchedule(traffic(prn))).first;
-    const SbasSchedule& schedule = known->second;
-    const SbasSlot slot = schedule.at(start);
+    const SbasSlot slot = known->second.at(start);
     const GpsTime time(start.time_since_epoch() / generation_period * generation_period - generation_lag);
-    if (slot.type == 6) return integrity(schedule, start, time);
+    if (slot.type == 6) return integrity(start, time);
     if (slot.type == 24) return mixed(slot, time);
     if (slot.type >= 2 && slot.type <= 5) return fast_block(slot, time);
     return made(slot, own, time);

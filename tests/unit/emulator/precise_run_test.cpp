@@ -191,6 +191,26 @@ TEST(PreciseRun, IsRefusedInALineWhereItCannotBe) {
                 HasSubstr("orbits and clocks have no time in common"));
 }
 
+TEST(PreciseRun, TakesRecordsOfTheCache) {
+    SKYLOOP_REQUIRE_SHARED(precise, orbits_2023);
+    const test::TemporaryFolder folder;
+    std::filesystem::create_directories(folder.path() / "navigation");
+    std::filesystem::copy_file(*test::shared_data(navigation_2023),
+                               folder.path() / "navigation/BRDC_20230010000_01D_MN.rnx.gz");
+    const Scenario scenario = emulator_scenario(
+        fmt::format("[run]\nstart = 2023-01-01T12:00:00Z\nduration_s = 60\n[sky]\nnavigation = \"auto\"\n"
+                    "orbits = \"{}\"\n",
+                    precise.string()));
+    auto cached = load_navigation(scenario, {}, {{}, folder.path()});
+    ASSERT_TRUE(cached) << cached.error().message;
+    EXPECT_TRUE(load_precise_truth(scenario, *cached));
+    auto nominal = load_navigation(scenario, {}, {});
+    ASSERT_TRUE(nominal) << nominal.error().message;
+    const auto refused = load_precise_truth(scenario, *nominal);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("the nominal sky is of no day"));
+}
+
 // An ANTEX file with one receiver's antenna, and one of every satellite of GPS.
 std::filesystem::path antenna_file(const test::TemporaryFolder& folder) {
     const std::vector<double> nadir{-2, 0, 3}, zenith{0, 2, 10};

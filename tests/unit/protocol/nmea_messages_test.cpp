@@ -26,7 +26,7 @@ std::string gll(double latitude, double longitude) {
     return encode(m, in_4_0);
 }
 
-std::string utc_text(GpsTime time, int decimals, const LeapSeconds& leap = LeapSeconds::announced()) {
+std::string nmea_time_text(GpsTime time, int decimals, const LeapSeconds& leap = LeapSeconds::announced()) {
     return format_utc(rounded_utc(time, decimals, leap), decimals);
 }
 
@@ -107,18 +107,18 @@ TEST(NmeaCoordinates, KeepWithinHalfADigitEverywhere) {
 
 TEST(RoundedUtc, CarriesOverMidnightMonthAndYear) {
     using namespace std::chrono_literals;
-    EXPECT_EQ(utc_text(gps_time("2024-03-05T23:59:59.996Z"), 2), "2024-03-06T00:00:00.00Z");
-    EXPECT_EQ(utc_text(gps_time("2024-03-05T23:59:59.994999999Z"), 2), "2024-03-05T23:59:59.99Z");
-    EXPECT_EQ(utc_text(gps_time("2024-02-28T23:59:59.995Z"), 2), "2024-02-29T00:00:00.00Z");
-    EXPECT_EQ(utc_text(gps_time("2023-12-31T23:59:59.9993Z"), 2), "2024-01-01T00:00:00.00Z");
-    EXPECT_EQ(utc_text(gps_time("2024-03-05T12:59:59.6Z"), 0), "2024-03-05T13:00:00Z");
-    EXPECT_EQ(utc_text(gps_time("2024-03-05T12:34:56.123456789Z"), 9), "2024-03-05T12:34:56.123456789Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2024-03-05T23:59:59.996Z"), 2), "2024-03-06T00:00:00.00Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2024-03-05T23:59:59.994999999Z"), 2), "2024-03-05T23:59:59.99Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2024-02-28T23:59:59.995Z"), 2), "2024-02-29T00:00:00.00Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2023-12-31T23:59:59.9993Z"), 2), "2024-01-01T00:00:00.00Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2024-03-05T12:59:59.6Z"), 0), "2024-03-05T13:00:00Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2024-03-05T12:34:56.123456789Z"), 9), "2024-03-05T12:34:56.123456789Z");
 }
 
 TEST(RoundedUtc, CountsThroughALeapSecond) {
-    EXPECT_EQ(utc_text(gps_time("2016-12-31T23:59:59.996Z"), 2), "2016-12-31T23:59:60.00Z");
-    EXPECT_EQ(utc_text(gps_time("2016-12-31T23:59:60.5Z"), 2), "2016-12-31T23:59:60.50Z");
-    EXPECT_EQ(utc_text(gps_time("2016-12-31T23:59:60.996Z"), 2), "2017-01-01T00:00:00.00Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2016-12-31T23:59:59.996Z"), 2), "2016-12-31T23:59:60.00Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2016-12-31T23:59:60.5Z"), 2), "2016-12-31T23:59:60.50Z");
+    EXPECT_EQ(nmea_time_text(gps_time("2016-12-31T23:59:60.996Z"), 2), "2017-01-01T00:00:00.00Z");
     Zda zda;
     const UtcTime utc = rounded_utc(gps_time("2016-12-31T23:59:60Z"), 2, LeapSeconds::announced());
     zda.time = nmea_time(utc);

@@ -33,8 +33,10 @@ public:
     State(const NavigationParameters& parameters, const NavigationKnowledge& knowledge);
 
     Fix solve(const Observations& observations, const ReceiverSettings& settings);
+    // Messages of SBAS have no time of their own: what comes before the first fix is not kept (ours; modules that are
+    // switched on use corrections one to two minutes later).
     void hear(std::span<const Subframe> messages, const ReceiverSettings& settings) {
-        augmentation_.hear(messages, settings);
+        if (position_) augmentation_.hear(messages, settings);
     }
     std::optional<RelativePosition> relate(const Observations& observations, const ReferenceStation& base);
     [[nodiscard]] bool velocity_known() const { return velocity_known_; }

@@ -78,7 +78,7 @@ inline SvgDocument titled_sheet(SvgPoint size, SvgPoint at, const std::string& t
 
 /// "2026-03-01 12:00:00", of UTC.
 inline std::string utc_words(GpsTime time) {
-    std::string text = format_utc(to_utc(time, LeapSeconds::announced()), 0);
+    std::string text = utc_text(time);
     text.replace(text.find('T'), 1, " ").pop_back();
     return text;
 }

@@ -16,8 +16,7 @@ namespace skyloop::inline world {
 class SbasSystemService {
 public:
     struct World {
-        std::shared_ptr<const NavigationSource> navigation;
-        const SignalInSpaceError& error;
+        SatelliteMonitor::Truth satellites;
         Geodetic place;
     };
     /// @param ionosphere of all systems; outlives this
@@ -39,7 +38,7 @@ private:
     void put_fast(Message& m, const SbasSlot& slot, GpsTime time);
     [[nodiscard]] SbasFastCorrections fast_block(const SbasSlot& slot, GpsTime time);
     [[nodiscard]] SbasMixedCorrections mixed(const SbasSlot& slot, GpsTime time);
-    [[nodiscard]] SbasIntegrity integrity(const SbasSchedule& schedule, GpsTime start, GpsTime time);
+    [[nodiscard]] SbasIntegrity integrity(GpsTime start, GpsTime time);
     [[nodiscard]] SbasLongTermHalf long_term(std::size_t first, GpsTime time, bool around);
     [[nodiscard]] SbasMessage made(const SbasSlot& slot, const SbasEphemeris& own, GpsTime time);
     [[nodiscard]] SbasIonosphere grid(const SbasSlot& slot, GpsTime time);
