@@ -145,8 +145,8 @@ TEST(ModernProfile, VelocityComesFromDoppler) {
 TEST(ModernProfile, MoreSystemsScatterLess) {
     double alone = 0, together = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        alone += horizontal_deviation(errors_of({ModernPreset::survey, 60, 1440, gps_alone(), seed}));
-        together += horizontal_deviation(errors_of({ModernPreset::survey, 60, 1440, all_systems(), seed}));
+        alone += horizontal_deviation(errors_of({ModernPreset::survey, 120, 720, gps_alone(), seed}));
+        together += horizontal_deviation(errors_of({ModernPreset::survey, 120, 720, all_systems(), seed}));
     }
     // The air is the same for all of them.
     EXPECT_GT(1 - together / alone, 0.22);
@@ -159,7 +159,7 @@ TEST(ModernProfile, ReportedAccuracyIsHonest) {
         for (const ModernPreset preset : {ModernPreset::survey, ModernPreset::consumer}) {
             int bounded = 0, above = 0, epochs = 0;
             for (std::uint64_t seed = 1; seed <= 6; ++seed)
-                run_plan({preset, 60, 1440, receiver, seed}, [&](const Trace& trace) {
+                run_plan({preset, 120, 720, receiver, seed}, [&](const Trace& trace) {
                     const Fix& fix = trace.epoch.fix;
                     const Eigen::Vector3d e = LocalFrame(trace.truth.geodetic).to_enu(to_ecef(fix.position)).vector();
                     bounded += std::hypot(e.x(), e.y()) <= fix.horizontal_accuracy.value() ? 1 : 0;

@@ -1,8 +1,9 @@
 #include "detail/live_motion.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "detail/least_squares.hpp"
 
 namespace skyloop::inline motion {
 namespace {
@@ -113,7 +114,7 @@ Eigen::Vector3d slope_at_end(std::span<const double> times, std::span<const Eige
     }
     const Eigen::Matrix3d normal = design.transpose() * design;
     const Eigen::Matrix3d right = design.transpose() * found;
-    const Eigen::Matrix3d fit = normal.colPivHouseholderQr().solve(right);
+    const Eigen::Matrix3d fit = least_squares(normal, right);
     return fit.row(1).transpose() / span;
 }
 

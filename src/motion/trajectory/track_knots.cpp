@@ -1,12 +1,12 @@
 #include "detail/track_knots.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/geo/geodetic.hpp"
+#include "detail/least_squares.hpp"
 
 namespace skyloop::inline motion {
 namespace {
@@ -54,7 +54,7 @@ LocalFit local_fit(Knots knots, const Window& window, int degree) {
             design(i, k) = power;
         places.row(i) = (point.position - knots[window.at].position).transpose();
     }
-    const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 5, 3> fit = design.colPivHouseholderQr().solve(places);
+    const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 5, 3> fit = least_squares(design, places);
     LocalFit result;
     result.velocity = fit.row(1).transpose() / window.span;
     result.acceleration = 2 * fit.row(2).transpose() / (window.span * window.span);

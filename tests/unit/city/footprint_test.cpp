@@ -82,14 +82,14 @@ TEST(Triangulated, CoversStarsWithStarsAsHoles) {
     }
 }
 
-TEST(Triangulated, CoversACombOfTenThousandCorners) {
+TEST(Triangulated, CoversACombOfThousandsOfCorners) {
     Ring comb;
-    for (int i = 0; i < 5000; ++i) {
+    for (int i = 0; i < 2000; ++i) {
         comb.emplace_back(i, 0);
         comb.emplace_back(i + 0.5, 100);
     }
-    comb.emplace_back(5000, 0);
-    comb.emplace_back(5000, -1);
+    comb.emplace_back(2000, 0);
+    comb.emplace_back(2000, -1);
     comb.emplace_back(0, -1);
     const Footprint footprint{comb, {}};
     EXPECT_NEAR(covered_area(footprint), ring_area(comb), 1e-6 * ring_area(comb));

@@ -165,13 +165,13 @@ TEST(SbasServices, SendTheSameWheneverTheyAreAsked) {
         std::map<SatelliteId, SbasWords> sent;
         for (const SatelliteId id : {waas, other_egnos, egnos})
             sent[id] = *all->message(id, end);
-        // Bounds and fast corrections are the same, the rest comes at other times.
+        // Fast corrections are the same, the rest comes at other times.
         differ += sent.at(egnos) != sent.at(other_egnos) ? 1 : 0;
         if (end >= first_heard + 200s) {
             EXPECT_EQ(sent.at(egnos), *late->message(egnos, end));
         }
     }
-    EXPECT_GT(differ, 200);
+    EXPECT_GT(differ, 190) << "of the 200 that are not fast corrections";
 }
 
 TEST(SbasServices, SendEveryTypeInTurn) {
@@ -213,7 +213,7 @@ TEST(SbasServices, SpeakOfTheRecordsThatUsersHave) {
     ASSERT_TRUE(told.contains(before) && told.contains(after));
     EXPECT_LE(told.at(before).second, change + 12s);
     EXPECT_GT(told.at(after).first, change) << "as what is sent is seconds old";
-    EXPECT_LT(told.at(after).first, change + 40s);
+    EXPECT_LT(told.at(after).first, change + 60s);
 }
 
 TEST(SbasServices, TellNothingOfErrorsThatAreSwitchedOff) {
