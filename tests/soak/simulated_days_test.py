@@ -1,7 +1,7 @@
 """Each board with each scripted client for a day of simulated time, with a jammer, a freeze, a silence and a lost configuration:
 it ends as it should, its recording is whole, and neither memory nor open files grow.
 
-SKYLOOP_SOAK_HOURS: simulated hours of each pair; a quarter of one by default."""
+SKYLOOP_SOAK_HOURS: simulated hours of each pair; a tenth of one by default."""
 import concurrent.futures
 import json
 import os
@@ -13,7 +13,7 @@ import unittest
 
 from growth import SKYLOOP, Growth, open_folder, septentrio_that_sends, skyloop
 
-HOURS = float(os.environ.get("SKYLOOP_SOAK_HOURS", "0.25"))
+HOURS = float(os.environ.get("SKYLOOP_SOAK_HOURS", "0.1"))
 SCENARIO = pathlib.Path(__file__).with_name("day.toml")
 CLIENTS = ("careful-ubx", "naive-ubx", "careful-nmea", "naive-nmea")
 # Of these `decode` knows the bytes.

@@ -15,9 +15,10 @@ CorrectionState solved_with(const Epoch& epoch, CorrectionState handed, Correcti
     return epoch.observations.signals.empty() ? now : handed;
 }
 
-// What of the corrections is in the solution: with few satellites, or none, it is less than there could be.
+// What of the corrections is in the solution: with few satellites, or none, it is less than there could be, and where
+// those of SBAS are, nothing.
 CorrectionState in_solution(const Fix& fix, CorrectionState at_most) {
-    if (at_most == CorrectionState::none) return CorrectionState::none;
+    if (at_most == CorrectionState::none || fix.sbas_source) return CorrectionState::none;
     switch (fix.type) {
         case FixType::dgnss:
             return CorrectionState::differential;

@@ -225,7 +225,8 @@ void CarrierFilter::reset() { state_ = std::make_unique<State>(parameters_); }
 
 std::optional<CarrierOffset> CarrierFilter::update(std::span<const SingleDifference> differences,
                                                    const Spacing& spacing, GpsTime time) {
-    if (state_->contradicted() || state_->outlived(time)) reset();
+    if (state_->contradicted() || state_->outlived(time))
+        state_ = std::make_unique<State>(parameters_, state_->hope_of_next());
     return state_->update(differences, spacing, time);
 }
 std::optional<FixedOffset> CarrierFilter::fix() { return state_->fix(); }

@@ -14,9 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t least_pairs = 4;
-// Echoes of a street that a receiver has left stay in the ambiguities for minutes. Where these could be whole, it is
-// sooner to begin anew.
-constexpr Seconds hope_lasts{30};
 constexpr double hope_within_m = 15e3;
 
 double variance_of_phase(const SingleDifference& d) { return d.phase_variance + d.echo_variance; }
@@ -125,12 +122,13 @@ std::optional<FixedOffset> CarrierFilter::State::fix() {
         const double least = part.share < 1 ? p_.least_success_of_part : p_.least_success;
         if (auto fixed = fix(chosen, least)) {
             unfixed_since_.reset();
+            hope_ = hope_lasts;
             return fixed;
         }
     }
     fixed_since_.reset();
     if (!unfixed_since_) unfixed_since_ = time_;
-    hopeless_ = length_m_ < hope_within_m && difference(*time_, *unfixed_since_) >= hope_lasts;
+    hopeless_ = length_m_ < hope_within_m && difference(*time_, *unfixed_since_) >= hope_;
     return std::nullopt;
 }
 

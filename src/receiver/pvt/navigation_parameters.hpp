@@ -121,8 +121,8 @@ struct CarrierParameters {
     Angle integers_from = Angle::degrees(12);  ///< elevation of satellites whose ambiguities are fixed
     Seconds settled_after{1};                  ///< of tracking at both ends, an ambiguity may be fixed
     double least_gap = 20;                     ///< of IntegerCandidates::gap()
-    double least_success = 0.9;                ///< of IntegerCandidates::success
-    double least_success_of_part = 0.95;       ///< where ambiguities are left out
+    double least_success = 0.6;                ///< of IntegerCandidates::success
+    double least_success_of_part = 0.7;        ///< where ambiguities are left out
     Metres most_when_fixed{0.1};               ///< deviation of a place in space that whole ambiguities give
     Seconds hold_after{5};                     ///< since they were fixed without a break, ambiguities are held
     Seconds memory{30};                        ///< of an ambiguity whose signal is missed

@@ -40,8 +40,9 @@ public:
         receiver_.input(PortId::uart1, encode(Rtcm3MsmObservations{1077, 7, tow, false, {cell}}), fix_.time);
         ++heard_;
     }
-    // The next second. What it solves follows from the corrections at hand, but for `fewer`: satellites that have none.
-    const NavigationState& go_on(bool fewer = false) {
+    // The next second. What it solves follows from the corrections at hand, but for `fewer`: satellites that have none,
+    // which those of SBAS may serve.
+    const NavigationState& go_on(bool fewer = false, std::optional<SatelliteId> sbas = std::nullopt) {
         fix_.time += 1s;
         const Corrections& corrections = receiver_.settings_at(fix_.time).corrections;
         const Seconds age =
@@ -51,6 +52,8 @@ public:
                     : age > corrections.float_timeout               ? FixType::dgnss
                     : heard_ < 5 || age > corrections.fixed_timeout ? FixType::rtk_float
                                                                     : FixType::rtk_fixed;
+        if (!any && sbas) fix_.type = FixType::dgnss;
+        fix_.sbas_source = sbas;
         Epoch epoch{fix_};
         epoch.observations.receive_time = fix_.time;
         epoch.observations.signals.emplace_back();
@@ -104,6 +107,16 @@ TEST(ReceiverCorrections, AreNotToldOfASolutionThatHasNone) {
 }
 
 // A solution that was made before they came has none of them, though it was handed in after.
+TEST(ReceiverCorrections, AreNotThoseOfSbas) {
+    Rover rover;
+    rover.hear_base();
+    EXPECT_EQ(rover.go_on().corrections.state, CorrectionState::rtk_float);
+    const NavigationState& state = rover.go_on(true, SatelliteId{Constellation::sbas, 36});
+    EXPECT_EQ(state.epoch.fix.type, FixType::dgnss);
+    EXPECT_EQ(state.corrections.state, CorrectionState::none);
+    EXPECT_EQ(corrections_in_use(state), CorrectionOrigin::sbas);
+}
+
 TEST(ReceiverCorrections, DoNotActBackwards) {
     Rover rover;
     rover.go_on();

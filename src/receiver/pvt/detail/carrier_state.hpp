@@ -32,12 +32,16 @@ inline StateName ambiguity_of(const SingleDifference& d) { return {StateName::Ki
 
 class CarrierFilter::State {
 public:
-    explicit State(const CarrierParameters& parameters) : p_(parameters) {}
+    // Echoes of a street that a receiver has left stay in the ambiguities for minutes. Where these could be whole, it
+    // is sooner to begin anew; the next time it takes twice as long, as a weak sky needs it.
+    static constexpr Seconds hope_lasts{30};
+    explicit State(const CarrierParameters& parameters, Seconds hope = hope_lasts) : p_(parameters), hope_(hope) {}
 
     std::optional<CarrierOffset> update(std::span<const SingleDifference> differences, const Spacing& spacing,
                                         GpsTime time);
     std::optional<FixedOffset> fix();
     [[nodiscard]] bool contradicted() const { return misfits_ >= p_.most_misfits || hopeless_; }
+    [[nodiscard]] Seconds hope_of_next() const { return hopeless_ ? 2 * hope_ : hope_lasts; }
     [[nodiscard]] bool outlived(GpsTime time) const { return time_ && difference(time, *time_) > p_.memory; }
 
 private:
@@ -71,7 +75,8 @@ private:
     std::map<std::pair<Constellation, Signal>, Group> groups_;
     std::optional<GpsTime> time_, fixed_since_, unfixed_since_;
     double length_m_ = 0;                           // of the baseline
-    bool hopeless_ = false;                         // what is known of the ambiguities keeps them from being whole
+    Seconds hope_;                                  // for which ambiguities that could be whole may float
+    bool hopeless_ = false;                         // they have floated longer
     Seconds passed_;                                // since the epoch before
     int misfits_ = 0;                               // epochs in a row in which most phases did not fit
     double misfit_squares_ = 0, misfit_count_ = 0;  // of this epoch's phases, in their expected variances
