@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint8_t solution_computed = 0x12;  // ext_sol_status of captures, of what there is no other value
 constexpr std::uint8_t gal_bds_mask = 0x11, gps_glo_mask = 0x51;
-constexpr std::uint32_t sol_computed = 0, insufficient = 1, doppler_velocity = 8;
+constexpr std::uint32_t sol_computed = 0, doppler_velocity = 8;
 
 void put_best_velocity(const Fix& fix, UnicoreBestNav& log) {
     const UnicoreDeviations deviations = velocity_deviations(fix);
