@@ -216,10 +216,14 @@ void UnicoreSettings::remove(std::optional<PortId> port, const std::optional<Uni
 
 bool UnicoreSettings::set_topic(std::span<const std::string> words) {
     if (words.size() < 2) return false;
-    const std::string pair = words[0] + " " + words[1];
-    if (topics_.contains(pair)) {
-        topics_[pair] = joined(words.subspan(2));
+    if (const auto pair = topics_.find(words[0] + " " + words[1]); pair != topics_.end()) {
+        if (words.size() > 2) pair->second = joined(words.subspan(2));
         return words.size() > 2;
+    }
+    const auto enabled = topics_.find(words[0] + " ENABLE");
+    if (enabled != topics_.end() && words[1] == "DISABLE") {
+        enabled->second.clear();
+        return true;
     }
     const auto topic = topics_.find(words[0]);
     if (topic == topics_.end()) return false;
