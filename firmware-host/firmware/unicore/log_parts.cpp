@@ -47,8 +47,8 @@ UnicoreDeviations velocity_deviations(const Fix& fix) {
 
 std::optional<OtherAntenna> other_antenna(const ReportContext& context) {
     const auto& relative = context.state.epoch.relative;
-    if (!has_two_antennas(context.board) || !relative || !relative->base_moves) return std::nullopt;
-    const double north = -relative->north_m, east = -relative->east_m, up = relative->down_m;
+    if (!relative || !relative->base_moves) return std::nullopt;
+    const double north = relative->north_m, east = relative->east_m, up = -relative->down_m;
     const double horizontal = std::hypot(north, east);
     if (!(horizontal > 0)) return std::nullopt;
     constexpr double degrees = 180 / std::numbers::pi;

@@ -31,7 +31,7 @@ struct OtherAntenna {
     double heading_std_deg = 0, pitch_std_deg = 0;      ///< 1 σ
     bool fixed = false;                                 ///< the ambiguities are whole numbers
 };
-/// Nothing of a board with one antenna, and without a pair.
+/// Nothing without a pair.
 std::optional<OtherAntenna> other_antenna(const ReportContext& context);
 
 /// A satellite's number where all systems share one row: GLONASS from 38, Galileo from 71, BeiDou from 161, QZSS from

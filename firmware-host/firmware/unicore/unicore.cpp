@@ -73,13 +73,18 @@ CommandOutcome UnicoreMaker::receive(const StreamPiece& piece, const Situation& 
 }
 
 // The position is that of the master antenna, solved alone or with a base's corrections: the pair makes no better one.
-// What stands where it was told has that place.
+// Its vector leads from there to the slave. What stands where it was told has that place.
 void UnicoreMaker::restrict(NavigationState& state) const {
-    Fix& fix = state.epoch.fix;
-    const bool of_pair = state.epoch.relative && state.epoch.relative->base_moves && !state.corrections.come;
-    if (of_pair && (fix.type == FixType::rtk_fixed || fix.type == FixType::rtk_float))
-        fix.type = fix.sbas_source ? FixType::dgnss : FixType::fix_3d;
     tell_given_place(state);
+    auto& relative = state.epoch.relative;
+    if (!relative || !relative->base_moves) return;
+    Fix& fix = state.epoch.fix;
+    const bool of_pair = fix.type == FixType::rtk_fixed || fix.type == FixType::rtk_float;
+    if (of_pair && !state.corrections.come) fix.type = fix.sbas_source ? FixType::dgnss : FixType::fix_3d;
+    if (!has_two_antennas(board())) return relative.reset();
+    relative->north_m *= -1;
+    relative->east_m *= -1;
+    relative->down_m *= -1;
 }
 
 void UnicoreMaker::follow(const NavigationState& state) {
