@@ -99,7 +99,7 @@ bool UnicoreMaker::mode(const Command& command) {
         adopt();
         return true;
     }
-    const UnicoreHeader header = unicore_header(command.asked.report);
+    const UnicoreHeader header = unicore_header(command.asked.report, command.asked.now);
     // The head of a log, and a checksum in place of its CRC.
     const std::string text = unicore_log_line("MODE", header, fmt::format("MODE {},", now_.mode.words));
     command.outcome.answers.push_back(to_bytes(unicore_answer_line(text.substr(0, text.rfind('*')))));
@@ -240,7 +240,7 @@ bool UnicoreMaker::send_once(const Command& command, std::string_view name) {
     // The body comes some seconds after a start alone (SparkFun_RTK_Everywhere).
     if (!has_started_) return true;
     EpochMessages made(command.asked.report);
-    for (Bytes& message : unicore_messages(*kind, made, command.asked.from, {}))
+    for (Bytes& message : unicore_messages(*kind, made, command.asked.from, {}, command.asked.now))
         command.outcome.answers.push_back(std::move(message));
     return true;
 }
@@ -271,7 +271,7 @@ bool UnicoreMaker::remove_all_logs(const Command&) {
 
 // In the abbreviated form of NovAtel's logs (capture: jclark/satpulse, packet scanner tests).
 bool UnicoreMaker::list_logs(const Command& command) {
-    const UnicoreHeader header = unicore_header(command.asked.report);
+    const UnicoreHeader header = unicore_header(command.asked.report, command.asked.now);
     std::string text = fmt::format("<LOGLIST {} {} {}.000000 {} {} {:.6f} 0 0 {}\r\n<\t{}\r\n",
                                    com_name(command.asked.from), header.version, header.cpu_idle_percent,
                                    header.time_known ? "FINE" : "UNKNOWN", header.week, header.tow_ms / 1000.0,

@@ -27,15 +27,20 @@ void put_best_velocity(const Fix& fix, UnicoreBestNav& log) {
 
 }  // namespace
 
-UnicoreHeader unicore_header(const ReportContext& context) {
+UnicoreHeader unicore_header(const ReportContext& context, std::optional<GpsTime> asked) {
     const NavigationState& state = context.state;
+    const GpsTime epoch = state.epoch.fix.time;
+    constexpr double longest_s = 65.535, thousandths = 1000;
     UnicoreHeader header;
     header.leap_seconds = state.epoch.fix.leap_seconds;
-    header.delay_ms = static_cast<int>(std::lround(context.board.solution_latency.value() * 1e3));
-    header.time_known = state.time.time && state.time.date;
+    header.time_known = state.time.time && state.time.date && epoch != GpsTime{};
+    Seconds delay = context.board.solution_latency;
+    if (asked && header.time_known) delay = difference(*asked, epoch) + context.board.timing.answer;
+    header.delay_ms = static_cast<int>(std::lround(std::clamp(delay.value(), 0.0, longest_s) * thousandths));
     const WeekAndTow stamp = gps_stamp(state);
     header.week = header.time_known ? static_cast<int>(stamp.week) : 1;
-    header.tow_ms = header.time_known ? whole_milliseconds(stamp) : nearest<std::uint32_t>(state.since_boot.value() * 1e3);
+    header.tow_ms = header.time_known ? whole_milliseconds(stamp)
+                                      : nearest<std::uint32_t>(state.since_boot.value() * thousandths);
     return header;
 }
 

@@ -1,6 +1,8 @@
 /// From the receiver's state to the logs of a Unicore receiver.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "base/core/bytes.hpp"
@@ -12,8 +14,10 @@
 namespace skyloop::firmware {
 
 /// The head of a log of the last epoch. Before the time is known the week is 1 and the time of week that since the
-/// start (a capture of such a receiver; gnss_parse tests on GitHub show `UNKNOWN,1,8338000`).
-UnicoreHeader unicore_header(const ReportContext& context);
+/// start (`UNKNOWN,1,8338000` in a log of such a receiver).
+/// @param asked when it was asked for, which tells its delay (captures: 813 and 969 ms); nothing: it comes with the
+///        epoch
+UnicoreHeader unicore_header(const ReportContext& context, std::optional<GpsTime> asked = {});
 
 UnicoreBestNav unicore_best_nav(const ReportContext& context);
 UnicoreRecTime unicore_rec_time(const ReportContext& context);
@@ -26,7 +30,8 @@ UnicorePvtsln unicore_pvtsln(const ReportContext& context);
 UnicoreObsVm unicore_obs_vm(const ReportContext& context);
 
 /// The messages of a log: one most often, none before there is anything to tell.
+/// @param following corrections that leave by the port in the same epoch after it
 std::vector<Bytes> unicore_messages(const UnicoreLogKind& kind, EpochMessages& made, PortId port,
-                                    std::span<const UbxMessageId> following);
+                                    std::span<const UbxMessageId> following, std::optional<GpsTime> asked = {});
 
 }  // namespace skyloop::firmware

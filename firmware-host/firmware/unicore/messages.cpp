@@ -49,11 +49,11 @@ std::vector<Bytes> unicore_rtcm_messages(const UnicoreLogKind& kind, EpochMessag
 }  // namespace
 
 std::vector<Bytes> unicore_messages(const UnicoreLogKind& kind, EpochMessages& made, PortId port,
-                                    std::span<const UbxMessageId> following) {
+                                    std::span<const UbxMessageId> following, std::optional<GpsTime> asked) {
     if (kind.form == UnicoreForm::sentence) return made.of(kind.id, port, {});
     if (kind.form == UnicoreForm::rtcm) return unicore_rtcm_messages(kind, made, port, following);
     const ReportContext context = made.context(port);
-    const UnicoreHeader header = unicore_header(context);
+    const UnicoreHeader header = unicore_header(context, asked);
     if (kind.name == UnicoreBestNav::message_name) return log_of(unicore_best_nav(context), kind, header);
     if (kind.name == UnicoreRecTime::message_name) return log_of(unicore_rec_time(context), kind, header);
     if (kind.name == UnicoreAgric::message_name) return log_of(unicore_agric(context), kind, header);

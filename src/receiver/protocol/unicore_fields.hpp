@@ -2,15 +2,15 @@
 /// log, as text and as bytes, its listing and its reading follow.
 #pragma once
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -67,6 +67,13 @@ void put_text(std::array<char, Size>& to, std::string_view text) {
 
 namespace unicore_fields {
 
+/// With so many digits after the point, correctly rounded.
+std::string fixed_text(double value, int decimals);
+/// As mantissa and exponent.
+std::string mantissa_text(double value, int decimals);
+/// At least so many small hexadecimal digits.
+std::string digits_text(std::uint64_t value, int digits);
+
 /// Writes the body of a log as text: fields between commas.
 class Writer {
 public:
@@ -81,7 +88,7 @@ public:
     }
     template <class T>
     void counted(const std::vector<T>& list) {
-        next() += fmt::format("{}", list.size());
+        next() += std::to_string(list.size());
         rest(list, 0, 0);
     }
     [[nodiscard]] std::string take() { return std::move(text_); }
@@ -97,29 +104,19 @@ private:
         if constexpr (field_list::Group<T>)
             walk_fields(field, *this);
         else if constexpr (requires { T::quoted; })
-            next() += fmt::format("\"{}\"", text_of(field));
+            next() += '"' + text_of(field) + '"';
         else if constexpr (requires { field.size(); })
             next() += text_of(field);
         else if constexpr (requires { T::words; })
             next() += word_of(field.raw, T::words);
         else if constexpr (requires { T::hex_digits; })
-            next() += fmt::format("{:0{}x}", field.raw, T::hex_digits);
+            next() += digits_text(field.raw, T::hex_digits);
         else if constexpr (requires { T::mantissa_decimals; })
-            next() += fmt::format("{:.{}e}", field.raw, T::mantissa_decimals);
+            next() += mantissa_text(field.raw, T::mantissa_decimals);
         else if constexpr (requires { T::decimals; })
-            next() += number_of(field.raw, T::decimals);
+            next() += fixed_text(static_cast<double>(field.raw), T::decimals);
         else
-            next() += fmt::format("{}", field.raw);
-    }
-    template <class Raw>
-    static std::string number_of(Raw value, int decimals) {
-        if constexpr (std::is_floating_point_v<Raw>) {
-            std::string text;
-            append_fixed(text, static_cast<double>(value), std::min(decimals, 9));
-            return decimals > 9 ? fmt::format("{:.{}f}", value, decimals) : text;
-        } else {
-            return fmt::format("{}", value);
-        }
+            next() += std::to_string(field.raw);
     }
     template <class Characters>
     static std::string text_of(const Characters& characters) {
@@ -129,7 +126,7 @@ private:
     static std::string word_of(std::uint32_t number, std::span<const UnicoreWord> words) {
         for (const UnicoreWord& known : words)
             if (known.number == number) return std::string(known.word);
-        return fmt::format("{}", number);
+        return std::to_string(number);
     }
 
     std::string text_;

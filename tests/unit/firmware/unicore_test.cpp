@@ -79,6 +79,7 @@ TEST_F(UnicoreReceiver, AnswersAfter40To65Milliseconds) {
 }
 
 TEST_F(UnicoreReceiver, TakesCommandsInAnyLettersAndWithAChecksum) {
+    wait(1s);
     EXPECT_THAT(answers("$VERSIONA*1B"), ElementsAre(ok("VERSIONA"), StartsWith("#VERSIONA,97,GPS,FINE,2304,")));
     EXPECT_THAT(answers("unlogall"), ElementsAre(ok("unlogall")));
     EXPECT_THAT(answers("rtcm1077,com1,1"), ElementsAre(ok("rtcm1077,com1,1")));
@@ -164,7 +165,7 @@ TEST_F(UnicoreReceiver, SendsEachLogAtItsOwnPeriodByItsOwnPort) {
     EXPECT_THAT(lines("#UNIHEADINGA", PortId::uart3), SizeIs(8));
     EXPECT_THAT(lines("#BESTNAVA"), SizeIs(4));
     EXPECT_THAT(texts(), SizeIs(4));
-    EXPECT_THAT(answers("UNLOG COM2 UNIAGRICA"), ElementsAre(ok("UNLOG COM2 UNIAGRICA")));
+    EXPECT_THAT(answers("UNLOG COM2 UNIAGRICA"), testing::Contains(ok("UNLOG COM2 UNIAGRICA")));
     wait(1s);
     forget();
     wait(2s);
@@ -292,6 +293,7 @@ TEST_F(UnicoreReceiver, ChangesTheSpeedOfOnePort) {
 }
 
 TEST_F(UnicoreReceiver, ShowsItsConfiguration) {
+    wait(1s);
     auto told = answers("CONFIG");
     EXPECT_EQ(told.front(), ok("CONFIG"));
     EXPECT_THAT(told, testing::Contains("$CONFIG,COM3,CONFIG COM3 115200*23"));
@@ -320,16 +322,14 @@ TEST_F(UnicoreReceiver, SaysItsPortsNamesAtAStartAndGoesOnWithWhatWasSaved) {
     say("SAVECONFIG");
     say("GPRMC COM1 1");
     wait(1s);
+    EXPECT_THAT(answers("RESET"), testing::Contains(ok("RESET")));
     forget();
-    say("RESET");
     wait(8s);
-    EXPECT_EQ(texts()[0], ok("RESET"));
-    EXPECT_THAT(texts(), testing::Contains("$devicename,COM1*67"));
+    EXPECT_EQ(texts()[0], "$devicename,COM1*67");
     EXPECT_THAT(texts(PortId::uart3), ElementsAre("$devicename,COM3*65"));
     EXPECT_FALSE(lines("$GNGGA").empty());
     EXPECT_TRUE(lines("$GNRMC").empty());
-    forget();
-    say("FRESET");
+    EXPECT_THAT(answers("FRESET"), testing::Contains(ok("FRESET")));
     wait(8s);
     forget();
     wait(2s);
