@@ -62,8 +62,9 @@ void name_config_keys(DecodedMessage& message) {
     }
 }
 
-constexpr std::array<StreamKind, 7> all_kinds{StreamKind::ubx,     StreamKind::nmea, StreamKind::rtcm3,  StreamKind::msp,
-                                              StreamKind::mavlink, StreamKind::sbf,  StreamKind::unicore};
+constexpr std::array<StreamKind, 7> all_kinds{StreamKind::ubx,    StreamKind::nmea,    StreamKind::rtcm3,
+                                              StreamKind::msp,    StreamKind::mavlink, StreamKind::sbf,
+                                              StreamKind::unicore};
 // What switches each of these on.
 constexpr std::array<bool StreamProtocols::*, 7> protocol_flags{
     &StreamProtocols::ubx,     &StreamProtocols::nmea, &StreamProtocols::rtcm3,  &StreamProtocols::msp,
@@ -197,10 +198,10 @@ Result<void> decode_stream(InputStream& input, const std::string& path, Decoder&
 
 std::string nothing_in(const DecodeOptions& options, const std::string& name, std::uint64_t bytes) {
     const bool any = is_automatic(options.protocols);
-    return fmt::format(
-        "{}: no message of {} in its {} bytes{}", name,
-        any ? "UBX, NMEA, RTCM 3, MSP, MAVLink, SBF or Unicore" : fmt::format("{}", fmt::join(options.protocols, " or ")), bytes,
-        options.input == "-" ? "; what is packed is unpacked from files alone" : "");
+    return fmt::format("{}: no message of {} in its {} bytes{}", name,
+                       any ? "UBX, NMEA, RTCM 3, MSP, MAVLink, SBF or Unicore"
+                           : fmt::format("{}", fmt::join(options.protocols, " or ")),
+                       bytes, options.input == "-" ? "; what is packed is unpacked from files alone" : "");
 }
 
 int decode(const DecodeOptions& options) {

@@ -14,9 +14,7 @@ inline constexpr std::size_t ublox_port_count = 5, port_count = 6;
 /// As board files and port URIs name them, in the order of PortId.
 inline constexpr std::array<std::string_view, port_count> port_names{"i2c", "uart1", "uart2", "usb", "spi", "uart3"};
 
-constexpr bool is_uart(PortId port) {
-    return port == PortId::uart1 || port == PortId::uart2 || port == PortId::uart3;
-}
+constexpr bool is_uart(PortId port) { return port == PortId::uart1 || port == PortId::uart2 || port == PortId::uart3; }
 
 /// Classes of UBX messages that the receiver treats apart; sentences and RTCM have classes too where CFG-MSG names
 /// them (u-blox M8 interface description, 32.8 and 31.1.5).

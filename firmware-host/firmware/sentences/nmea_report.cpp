@@ -168,6 +168,7 @@ NmeaFormat nmea_format(const BoardProfile& board, const ReceiverConfig& config) 
                       .rmc_status = board.style.rmc_status.empty() ? 'V' : board.style.rmc_status.front(),
                       .empty_gsv_fields = board.style.tracked_only,
                       .dop_decimals = board.style.dop_decimals,
+                      .most_dop = board.style.unknown_dop,
                       .satellites_padded = board.style.satellites_padded,
                       .units_always = board.style.zeros_without_fix,
                       .deviations_padded = board.style.gst_padded,

@@ -105,8 +105,8 @@ void put_agric_second(const ReportContext& context, UnicoreAgric& log) {
     log.heading = static_cast<float>(other->heading_deg);
     log.pitch = static_cast<float>(other->pitch_deg);
     const RelativePosition& r = *context.state.epoch.relative;
-    const Geodetic second = to_geodetic(LocalFrame(context.state.epoch.fix.position)
-                                            .to_ecef(Position<Enu>{r.east_m, r.north_m, -r.down_m}));
+    const Geodetic second = to_geodetic(
+        LocalFrame(context.state.epoch.fix.position).to_ecef(Position<Enu>{r.east_m, r.north_m, -r.down_m}));
     log.second_lat = second.latitude.deg();
     log.second_lon = second.longitude.deg();
     log.second_height = second.height.above_ellipsoid.value() - context.state.epoch.fix.geoid_undulation.value();

@@ -272,13 +272,13 @@ bool UnicoreMaker::remove_all_logs(const Command&) {
 // In the abbreviated form of NovAtel's logs (capture: jclark/satpulse, packet scanner tests).
 bool UnicoreMaker::list_logs(const Command& command) {
     const UnicoreHeader header = unicore_header(command.asked.report, command.asked.now);
-    std::string text = fmt::format("<LOGLIST {} {} {}.000000 {} {} {:.6f} 0 0 {}\r\n<\t{}\r\n",
-                                   com_name(command.asked.from), header.version, header.cpu_idle_percent,
-                                   header.time_known ? "FINE" : "UNKNOWN", header.week, header.tow_ms / 1000.0,
-                                   header.leap_seconds, now_.logs.size());
+    std::string text =
+        fmt::format("<LOGLIST {} {} {}.000000 {} {} {:.6f} 0 0 {}\r\n<\t{}\r\n", com_name(command.asked.from),
+                    header.version, header.cpu_idle_percent, header.time_known ? "FINE" : "UNKNOWN", header.week,
+                    header.tow_ms / 1000.0, header.leap_seconds, now_.logs.size());
     for (const UnicoreLog& one : now_.logs)
-        text += fmt::format("<\t{} {} {} \r\n", one.name, com_name(one.port),
-                            static_cast<double>(one.period_ms) / 1000);
+        text +=
+            fmt::format("<\t{} {} {} \r\n", one.name, com_name(one.port), static_cast<double>(one.period_ms) / 1000);
     command.outcome.answers.push_back(to_bytes(text + "\r\n"));
     return true;
 }

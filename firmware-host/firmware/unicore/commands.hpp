@@ -8,7 +8,8 @@
 
 namespace skyloop::firmware {
 
-/// Characters of a command from which on it is refused (invented; the longest of any client named in the sources has 60).
+/// Characters of a command from which on it is refused (invented; the longest of any client named in the sources has
+/// 60).
 inline constexpr std::size_t too_long_command = 240;
 
 /// Words in capitals; commas separate them as blanks do ("rtcm1077,com1,1").

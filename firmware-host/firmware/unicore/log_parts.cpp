@@ -54,8 +54,8 @@ std::optional<OtherAntenna> other_antenna(const ReportContext& context) {
     constexpr double degrees = 180 / std::numbers::pi;
     const double heading = std::atan2(east, north) * degrees;
     const double length = std::hypot(horizontal, up);
-    const double down = relative->down_deviation.value() > 0 ? relative->down_deviation.value()
-                                                             : relative->deviation.value();
+    const double down =
+        relative->down_deviation.value() > 0 ? relative->down_deviation.value() : relative->deviation.value();
     return OtherAntenna{length,
                         heading < 0 ? heading + 360 : heading,
                         std::atan2(up, horizontal) * degrees,

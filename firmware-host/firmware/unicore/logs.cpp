@@ -1,8 +1,8 @@
 #include "firmware/unicore/logs.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <chrono>
+#include <cmath>
 
 #include "firmware/messages/field_values.hpp"
 #include "firmware/unicore/log_parts.hpp"
@@ -39,8 +39,8 @@ UnicoreHeader unicore_header(const ReportContext& context, std::optional<GpsTime
     header.delay_ms = static_cast<int>(std::lround(std::clamp(delay.value(), 0.0, longest_s) * thousandths));
     const WeekAndTow stamp = gps_stamp(state);
     header.week = header.time_known ? static_cast<int>(stamp.week) : 1;
-    header.tow_ms = header.time_known ? whole_milliseconds(stamp)
-                                      : nearest<std::uint32_t>(state.since_boot.value() * thousandths);
+    header.tow_ms =
+        header.time_known ? whole_milliseconds(stamp) : nearest<std::uint32_t>(state.since_boot.value() * thousandths);
     return header;
 }
 

@@ -72,8 +72,8 @@ UnicoreObservation unicore_observation(const Observation& o, std::uint32_t chann
         const double base = first ? 1602.0e6 : 1246.0e6, step = first ? 0.5625e6 : 0.4375e6;
         out.glonass_channel = nearest<std::uint16_t>((o.carrier.value() - base) / step + 7);
     }
-    const bool offset = glonass || o.satellite.constellation == Constellation::qzss ||
-                        o.satellite.constellation == Constellation::sbas;
+    const bool offset =
+        glonass || o.satellite.constellation == Constellation::qzss || o.satellite.constellation == Constellation::sbas;
     out.prn = offset ? unicore_prn(o.satellite) : static_cast<std::uint16_t>(o.satellite.number);
     if (o.pseudorange) out.pseudorange = o.pseudorange->value();
     if (o.carrier_phase) out.adr = -*o.carrier_phase;

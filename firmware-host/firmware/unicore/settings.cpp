@@ -209,8 +209,7 @@ void UnicoreSettings::add(const UnicoreLog& log) {
 
 void UnicoreSettings::remove(std::optional<PortId> port, const std::optional<UnicoreLogKind>& kind) {
     std::erase_if(logs, [&](const UnicoreLog& log) {
-        return (!port || log.port == *port) &&
-               (!kind || (log.kind.name == kind->name && log.kind.form == kind->form));
+        return (!port || log.port == *port) && (!kind || (log.kind.name == kind->name && log.kind.form == kind->form));
     });
 }
 

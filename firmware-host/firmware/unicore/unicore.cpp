@@ -55,8 +55,7 @@ UnicoreMaker::UnicoreMaker(const BoardProfile& board, const ReceiverOptions& opt
 
 std::vector<StreamPiece> UnicoreMaker::cut(PortUnit& unit, ByteSpan bytes, GpsTime now) {
     std::vector<StreamPiece> pieces = unit.splitter.feed(bytes, now);
-    CommandLineReader& reader =
-        lines_.try_emplace(unit.id, too_long_command, LongLine::is_cut).first->second;
+    CommandLineReader& reader = lines_.try_emplace(unit.id, too_long_command, LongLine::is_cut).first->second;
     for (const std::string& line : reader.feed(bytes))
         if (!line.empty()) pieces.push_back({StreamKind::command, to_bytes(line)});
     return pieces;

@@ -159,9 +159,8 @@ bool list_unicore_as(const UnicoreLineView& line, DecodedMessage& message) {
 // Of answers, and of logs that are not known, the fields as they stand.
 void list_unicore_line(const UnicoreLineView& line, DecodedMessage& message) {
     message.id = line.name;
-    const bool known =
-        !line.name.empty() && line.lead == '#' &&
-        KnownUnicoreLogs::any([&]<class Message>() { return list_unicore_as<Message>(line, message); });
+    const bool known = !line.name.empty() && line.lead == '#' &&
+                       KnownUnicoreLogs::any([&]<class Message>() { return list_unicore_as<Message>(line, message); });
     if (!known) {
         std::vector<DecodedValue> fields;
         for (const std::string_view field : line.fields)
@@ -180,8 +179,8 @@ void list_unicore(ByteSpan bytes, DecodedMessage& message) {
 }  // namespace
 
 std::string_view stream_kind_name(StreamKind kind) {
-    constexpr std::array<std::string_view, stream_kind_count> names{"ubx", "nmea",    "rtcm3", "noise",
-                                                                    "msp", "mavlink", "sbf",   "command", "unicore"};
+    constexpr std::array<std::string_view, stream_kind_count> names{"ubx",     "nmea", "rtcm3",   "noise",  "msp",
+                                                                    "mavlink", "sbf",  "command", "unicore"};
     return names[static_cast<std::size_t>(kind)];
 }
 

@@ -31,7 +31,7 @@ std::string gns_text(const Gns& m, const NmeaFormat& format, int coordinate_deci
     for (const NmeaMode mode : m.modes)
         modes += static_cast<char>(mode);
     s.text(modes).number(std::clamp(m.satellites_used, 0, 99), format.satellites_padded ? 2 : 1);
-    add_dop(s, m.hdop, format.dop_decimals);
+    add_dop(s, m.hdop, format.dop_decimals, format.most_dop);
     add_metres(s, m.altitude, format.altitude_decimals);
     add_metres(s, m.geoid_separation, format.altitude_decimals);
     add_decimal(s, m.correction_age ? std::optional(m.correction_age->value()) : std::nullopt, 1);
@@ -141,7 +141,7 @@ std::string gga_text(const Gga& m, const NmeaFormat& format, int coordinate_deci
     add_time(s, m.time, format);
     add_position(s, m.position, coordinate_decimals);
     s.number(m.quality).number(std::clamp(m.satellites_used, 0, 99), format.satellites_padded ? 2 : 1);
-    add_dop(s, m.hdop, format.dop_decimals);
+    add_dop(s, m.hdop, format.dop_decimals, format.most_dop);
     for (const auto& height : {m.altitude, m.geoid_separation}) {
         if (height && std::isfinite(height->value()))
             s.decimal(height->value(), format.altitude_decimals).letter('M');
@@ -241,7 +241,7 @@ std::string encode(const Gsa& m, const NmeaFormat& format) {
         s.number(m.satellites[i], 2);
     s.empty(static_cast<int>(gsa_slots - shown));
     for (const auto& dop : {m.pdop, m.hdop, m.vdop})
-        add_dop(s, dop, format.dop_decimals);
+        add_dop(s, dop, format.dop_decimals, format.most_dop);
     if (since_4_10(format)) s.text(m.system_id ? hex_text(*m.system_id) : "");
     return s.finish();
 }

@@ -84,10 +84,9 @@ std::uint8_t unicore_answer_checksum(std::string_view answer) {
 }
 
 std::string unicore_log_line(std::string_view name, const UnicoreHeader& header, std::string_view body) {
-    const std::string text =
-        fmt::format("{},{},GPS,{},{},{},{},0,{},{};{}", name, header.cpu_idle_percent,
-                    header.time_known ? "FINE" : "UNKNOWN", header.week, header.tow_ms, header.version,
-                    header.leap_seconds, header.delay_ms, body);
+    const std::string text = fmt::format("{},{},GPS,{},{},{},{},0,{},{};{}", name, header.cpu_idle_percent,
+                                         header.time_known ? "FINE" : "UNKNOWN", header.week, header.tow_ms,
+                                         header.version, header.leap_seconds, header.delay_ms, body);
     const std::uint32_t crc = unicore_crc({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
     return fmt::format("#{}*{:08x}\r\n", text, crc);
 }

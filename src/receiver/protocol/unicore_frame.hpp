@@ -1,8 +1,8 @@
 /// Frames of Unicore's N4 receivers (UM980, UM982): logs in ASCII and binary, and the answers to commands.
 ///
-/// A log as text is `#NAME,idle,GPS,FINE,week,tow_ms,version,0,leap,delay_ms;body*crc`, as bytes a head of 24 from AA 44
-/// B5 on. Both end in the same CRC-32. Answers (`$command`, `$CONFIG`, `$devicename`, `#MODE`) end in an exclusive or
-/// that, unlike NMEA's, covers their first character. Sources: captures of UM980 and UM982 in jclark/satpulse
+/// A log as text is `#NAME,idle,GPS,FINE,week,tow_ms,version,0,leap,delay_ms;body*crc`, as bytes a head of 24 from AA
+/// 44 B5 on. Both end in the same CRC-32. Answers (`$command`, `$CONFIG`, `$devicename`, `#MODE`) end in an exclusive
+/// or that, unlike NMEA's, covers their first character. Sources: captures of UM980 and UM982 in jclark/satpulse
 /// (gps/testdata/packets/unicore), examples of sparkfun/SparkFun_Unicore_GNSS_Arduino_Library, each recomputed.
 #pragma once
 

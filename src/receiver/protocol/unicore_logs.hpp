@@ -15,16 +15,16 @@ namespace skyloop::inline receiver {
 inline constexpr std::array<UnicoreWord, 2> unicore_solution_words{{{0, "SOL_COMPUTED"}, {1, "INSUFFICIENT_OBS"}}};
 /// Kinds of solution, of positions, velocities and headings.
 inline constexpr std::array<UnicoreWord, 11> unicore_type_words{{{0, "NONE"},
-                                                                {1, "FIXEDPOS"},
-                                                                {2, "FIXEDHEIGHT"},
-                                                                {8, "DOPPLER_VELOCITY"},
-                                                                {16, "SINGLE"},
-                                                                {17, "PSRDIFF"},
-                                                                {18, "SBAS"},
-                                                                {32, "L1_FLOAT"},
-                                                                {34, "NARROW_FLOAT"},
-                                                                {48, "L1_INT"},
-                                                                {50, "NARROW_INT"}}};
+                                                                 {1, "FIXEDPOS"},
+                                                                 {2, "FIXEDHEIGHT"},
+                                                                 {8, "DOPPLER_VELOCITY"},
+                                                                 {16, "SINGLE"},
+                                                                 {17, "PSRDIFF"},
+                                                                 {18, "SBAS"},
+                                                                 {32, "L1_FLOAT"},
+                                                                 {34, "NARROW_FLOAT"},
+                                                                 {48, "L1_INT"},
+                                                                 {50, "NARROW_INT"}}};
 inline constexpr std::array<UnicoreWord, 1> unicore_datum_words{{{61, "WGS84"}}};
 inline constexpr std::array<UnicoreWord, 2> unicore_clock_words{{{0, "VALID"}, {3, "INVALID"}}};
 inline constexpr std::array<UnicoreWord, 2> unicore_utc_words{{{0, "INVALID"}, {1, "VALID"}}};
@@ -291,6 +291,8 @@ using KnownUnicoreLogs = MessageTypes<UnicoreBestNav, UnicoreRecTime, UnicoreVer
 
 /// Logs that have a binary form whose layout is known.
 template <class Message>
-concept UnicoreBinaryLog = requires { Message::message_id; };
+concept UnicoreBinaryLog = requires {
+    Message::message_id;
+};
 
 }  // namespace skyloop::inline receiver
