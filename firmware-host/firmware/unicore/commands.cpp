@@ -88,6 +88,10 @@ bool UnicoreMaker::take_setting(const std::vector<std::string>& words, PortId po
     const auto rest = behind(words, 1);
     if (words.front() == "MODE") return set_mode(rest);
     if (words.front() == "MASK") return set_mask(rest);
+    if (words.front() == "UNLOGALL") {
+        now_.remove(std::nullopt, std::nullopt);
+        return true;
+    }
     if (words.front() != "CONFIG") return set_log(words, port);
     const auto named = words.size() > 2 ? com_port(board(), words[1]) : std::nullopt;
     return named ? set_port(*named, behind(words, 2)) : now_.set_topic(rest);

@@ -29,16 +29,18 @@ void put_best_velocity(const Fix& fix, UnicoreBestNav& log) {
 
 UnicoreHeader unicore_header(const ReportContext& context, std::optional<GpsTime> asked) {
     const NavigationState& state = context.state;
-    const GpsTime epoch = state.epoch.fix.time;
+    // Until the first epoch after a start there is none to be stamped with.
+    const bool any_epoch = state.epoch.fix.time != GpsTime{};
+    const GpsTime epoch = any_epoch ? state.epoch.fix.time : asked.value_or(GpsTime{});
     constexpr double longest_s = 65.535, thousandths = 1000;
     UnicoreHeader header;
     header.leap_seconds = state.epoch.fix.leap_seconds;
-    header.time_known = state.time.time && state.time.date && epoch != GpsTime{};
+    header.time_known = state.time.time && state.time.date && (any_epoch || asked);
     Seconds delay = context.board.solution_latency;
-    if (asked && header.time_known) delay = difference(*asked, epoch) + context.board.timing.answer;
+    if (asked) delay = difference(*asked, epoch) + context.board.timing.answer;
     header.delay_ms = static_cast<int>(std::lround(std::clamp(delay.value(), 0.0, longest_s) * thousandths));
-    const WeekAndTow stamp = gps_stamp(state);
-    header.week = header.time_known ? static_cast<int>(stamp.week) : 1;
+    const WeekAndTow stamp = gps_stamp(epoch);
+    header.week = header.time_known ? static_cast<int>(reported_week(state, stamp)) : 1;
     header.tow_ms =
         header.time_known ? whole_milliseconds(stamp) : nearest<std::uint32_t>(state.since_boot.value() * thousandths);
     return header;

@@ -16,9 +16,10 @@
 namespace skyloop::firmware {
 namespace {
 
-// In the order in which they leave (capture nmea-default.jsonl of jclark/satpulse for the first six).
-constexpr std::array<std::string_view, 10> unicore_sentences{"RMC", "GGA", "GLL", "GSA", "GSV",
-                                                             "VTG", "GST", "ZDA", "THS", "GNS"};
+// In the order in which they leave (capture nmea-default.jsonl of jclark/satpulse for the first six). The last ones are
+// those that any board can be given.
+constexpr std::array<std::string_view, 14> unicore_sentences{"RMC", "GGA", "GLL", "GSA", "GSV", "VTG", "GST",
+                                                             "ZDA", "THS", "GNS", "GBS", "GRS", "DTM", "VLW"};
 struct OwnLog {
     std::string_view asked, name;
     bool text, binary, heading;
@@ -257,6 +258,8 @@ std::string UnicoreSettings::text(const UnicoreSettings& factory) const {
     if (least_cn0) text += fmt::format("MASK CN0 {}\n", *least_cn0);
     for (const MaskWord& known : mask_words)
         if (masked.contains(known.system)) text += fmt::format("MASK {}\n", known.word);
+    if (logs == factory.logs) return text;
+    text += "UNLOGALL\n";
     for (const UnicoreLog& log : logs)
         text += fmt::format("{} {} {}\n", log.name, com_name(log.port), static_cast<double>(log.period_ms) / 1000);
     return text;

@@ -28,6 +28,7 @@ struct UnicoreLogKind {
     std::string name;      ///< "GGA", "BESTNAV", "RTCM1074"; as the tables of messages call it
     UbxMessageId id{};     ///< of sentences and RTCM
     std::size_t rank = 0;  ///< of its place within an epoch
+    bool operator==(const UnicoreLogKind&) const = default;
 };
 /// By the name that clients ask for: GPGGA and GNGGA, BESTNAVA, UNIAGRICA, RTCM1074, in any letter case. Nothing for
 /// one that the board does not send.
@@ -41,6 +42,7 @@ struct UnicoreLog {
     std::string name;  ///< as it was asked for, in capitals
     UnicoreLogKind kind;
     std::uint64_t period_ms = 1000;
+    bool operator==(const UnicoreLog&) const = default;
 };
 
 /// "COM1" to "COM3"; empty for another port.
