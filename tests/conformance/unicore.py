@@ -304,7 +304,8 @@ class RtkBase(Unicore):
         for line in self.lines:
             self.command(line, 2000)
         self.step("corrections")
-        self.pump(2)
+        for number in (1077, 1087, 1097, 1127):
+            self.need(lambda item, number=number: item.kind == "rtcm" and item.id == number, 30000, f"RTCM {number}")
         items = [item for item in self.collect(HEALTHY) if item.kind == "rtcm"]
         numbers = {item.id for item in items}
         self.check({1077, 1087, 1097, 1127} <= numbers, "RTCM 1077, 1087, 1097, 1127", numbers)
