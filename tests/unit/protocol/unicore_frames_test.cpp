@@ -60,7 +60,7 @@ std::string body_of(const std::string& line) {
 }
 
 template <class Message>
-Message read(const std::string& line) {
+Message read_log(const std::string& line) {
     const auto view = parse_unicore_line(line);
     EXPECT_TRUE(view) << line;
     const auto message = read_unicore_body<Message>(view->fields);
@@ -69,12 +69,12 @@ Message read(const std::string& line) {
 }
 
 TEST(UnicoreFrame, WritesWhatReceiversHaveSent) {
-    EXPECT_EQ(unicore_body(read<UnicoreRecTime>(rectime_text)), body_of(rectime_text));
-    EXPECT_EQ(unicore_body(read<UnicoreBestNav>(bestnav_text)), body_of(bestnav_text));
-    EXPECT_EQ(unicore_body(read<UnicoreHeading>(heading_text)), body_of(heading_text));
-    EXPECT_EQ(unicore_body(read<UnicoreAgric>(agrica_text)), body_of(agrica_text));
-    EXPECT_EQ(unicore_body(read<UnicorePvtsln>(pvtsln_text)), body_of(pvtsln_text));
-    EXPECT_EQ(unicore_body(read<UnicoreVersion>(version_text)), body_of(version_text));
+    EXPECT_EQ(unicore_body(read_log<UnicoreRecTime>(rectime_text)), body_of(rectime_text));
+    EXPECT_EQ(unicore_body(read_log<UnicoreBestNav>(bestnav_text)), body_of(bestnav_text));
+    EXPECT_EQ(unicore_body(read_log<UnicoreHeading>(heading_text)), body_of(heading_text));
+    EXPECT_EQ(unicore_body(read_log<UnicoreAgric>(agrica_text)), body_of(agrica_text));
+    EXPECT_EQ(unicore_body(read_log<UnicorePvtsln>(pvtsln_text)), body_of(pvtsln_text));
+    EXPECT_EQ(unicore_body(read_log<UnicoreVersion>(version_text)), body_of(version_text));
     for (const std::string& line : {rectime_text, bestnav_text, heading_text, agrica_text, pvtsln_text, version_text}) {
         const auto view = parse_unicore_line(line);
         ASSERT_TRUE(view && view->header) << line;
