@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -66,6 +67,48 @@ protected:
     void forget() {
         lines_.clear();
         bytes_.clear();
+    }
+
+    static std::string with_sum(const std::string& answer, std::size_t from) {
+        unsigned sum = 0;
+        for (std::size_t i = from; i < answer.size(); ++i)
+            sum ^= static_cast<unsigned char>(answer[i]);
+        constexpr char digits[] = "0123456789ABCDEF";
+        return answer + '*' + digits[sum >> 4] + digits[sum & 15];
+    }
+    // Of an answer the sum covers the dollar.
+    static std::string answer_line(const std::string& text) { return with_sum(text, 0); }
+    static std::string ok_to(const std::string& command) {
+        return answer_line("$command," + command + ",response: OK");
+    }
+    static std::string refusal_of(const std::string& command, const std::string& name) {
+        return answer_line("$command," + command + ",response: PARSING FAILD NO MATCHING FUNC  " + name);
+    }
+
+    // CRC-32 from the highest bit of the reversed polynomial down, by polynomial division of the reflected bits.
+    static std::uint32_t own_crc(const std::uint8_t* bytes, std::size_t size) {
+        std::uint32_t crc = 0;
+        for (std::size_t i = 0; i < 8 * size; ++i) {
+            const std::uint32_t bit = bytes[i / 8] >> i % 8 & 1u;
+            const bool turn = ((crc ^ bit) & 1u) != 0;
+            crc >>= 1;
+            if (turn) crc ^= 0xEDB88320u;
+        }
+        return crc;
+    }
+
+    // The fields of a log's body, its CRC having been checked.
+    static std::vector<std::string> body_fields(const std::string& line) {
+        const std::size_t star = line.rfind('*'), body = line.find(';');
+        EXPECT_NE(body, std::string::npos) << line;
+        const std::string covered = line.substr(1, star - 1);
+        EXPECT_EQ(own_crc(reinterpret_cast<const std::uint8_t*>(covered.data()), covered.size()),
+                  std::stoul(line.substr(star + 1), nullptr, 16))
+            << line;
+        std::vector<std::string> fields(1);
+        for (const char c : line.substr(body + 1, star - body - 1))
+            c == ',' ? fields.emplace_back() : fields.back() += c;
+        return fields;
     }
 
     Receiver receiver_;
