@@ -81,7 +81,7 @@ std::string message_name(StreamKind kind, ByteSpan message) {
 
 Dialogue::Ends& Dialogue::ends(std::size_t wire) {
     while (ends_.size() <= wire)
-        ends_.push_back({PatientSplitter(client_protocols), StreamSplitter(receiver_protocols), {}});
+        ends_.push_back({PatientSplitter(client_protocols), StreamSplitter(receiver_protocols)});
     return ends_[wire];
 }
 
