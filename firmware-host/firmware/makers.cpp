@@ -7,6 +7,7 @@
 #include "firmware/output_only/output_only.hpp"
 #include "firmware/septentrio/septentrio.hpp"
 #include "firmware/ublox/ublox.hpp"
+#include "firmware/unicore/unicore.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -21,6 +22,7 @@ constexpr auto all_makers = std::to_array<MakerRow>({
     {"msp-v1", make_msp_v1, msp_v1_abilities},
     {"mavlink", make_mavlink, mavlink_abilities},
     {"sbf", make_septentrio, septentrio_abilities},
+    {"unicore", make_unicore, unicore_abilities},
 });
 
 }  // namespace

@@ -11,6 +11,7 @@ import sparkfun
 import tracker
 import u_center
 import ubloxcfg
+import unicore
 
 CLIENTS = {
     "adafruit": adafruit.Adafruit,
@@ -19,6 +20,8 @@ CLIENTS = {
     "ardupilot_nmea": ardupilot.ArduPilotNmea,
     "ardupilot_sbf": septentrio.ArduPilotSbf,
     "betaflight": betaflight.Betaflight,
+    "ardupilot_unicore": unicore.ArduPilotUnicore,
+    "ardupilot_unicore_moving": unicore.ArduPilotUnicoreMoving,
     "gpsd_probes": gpsd_probes.GpsdProbes,
     "inav": inav.Inav,
     "kumar_ros": kumar_ros.KumarRos,
@@ -30,8 +33,11 @@ CLIENTS = {
     "px4_ublox6": px4.Px4Ublox6,
     "px4_nmea": px4.Px4Nmea,
     "px4_septentrio": septentrio.Px4Septentrio,
+    "px4_unicore": unicore.Px4Unicore,
     "ros_septentrio": septentrio.RosSeptentrio,
+    "rtkbase_unicore": unicore.RtkBase,
     "sparkfun": sparkfun.SparkFun,
+    "sparkfun_unicore": unicore.SparkFunUnicore,
     "tracker": tracker.Tracker,
     "u_center": u_center.UCenter,
     "ubloxcfg": ubloxcfg.UbloxCfg,

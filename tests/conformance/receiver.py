@@ -56,14 +56,18 @@ BOARDS = {board.name: board for board in (
     Board("airoha-ag33xx", 115200),
     Board("ublox-6", 9600, 6),
     Board("septentrio-sbf", 115200),
+    Board("unicore-um980", 115200),
+    Board("unicore-um982", 115200),
 )}
 
 
-def start(board, folder, *arguments, duration=170, moving=False):
-    """`skyloop run` of a board on a pty in `folder`, at rest at PLACE unless a scenario among the arguments moves it."""
+def start(board, folder, *arguments, duration=170, moving=False, port=""):
+    """`skyloop run` of a board on a pty in `folder`, at rest at PLACE unless a scenario among the arguments moves it.
+
+    `port` is the board's port that the pty is laid to, "uart3"; without one the first UART."""
     place = () if moving else ("--at", ",".join(map(str, PLACE)))
     return Emulator("--board", board.name, *place, "--start", START, "--duration", duration, "--port",
-                    f"pty:{folder}/gps0", *arguments)
+                    f"{port + '=' if port else ''}pty:{folder}/gps0", *arguments)
 
 
 def wait_for_sentences(board, tty):

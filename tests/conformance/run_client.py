@@ -39,7 +39,8 @@ def play(kind, board, variant):
             scenario.write_text(kind.scenario, encoding="utf-8")
             arguments.append(scenario)
         for _ in range(2 if variant == "restart" else 1):
-            with receiver.start(board, folder, *arguments, moving="[trajectory]" in kind.scenario) as emulator:
+            with receiver.start(board, folder, *arguments, moving="[trajectory]" in kind.scenario,
+                                port=kind.port) as emulator:
                 try:
                     time.sleep(kind.after_power_on)
                     for _ in range(2 if variant == "reopen" else 1):

@@ -165,6 +165,12 @@ void ask_everything(ReceiverRig& rig) {
         rig.write(to_bytes(Sentence(question).finish()));
         rig.run(50ms);
     }
+    if (board.maker == MakerKind::unicore)
+        for (const char* const line : {"VERSIONB\r\n", "BESTNAVB\r\n", "AGRICA\r\n", "PVTSLNA\r\n", "RECTIMEA\r\n",
+                                       "OBSVMA\r\n", "CONFIG\r\n", "MODE\r\n"}) {
+            rig.write(to_bytes(line));
+            rig.run(100ms);
+        }
     if (board.maker != MakerKind::sbf) return;
     for (const char* const line : {"getReceiverCapabilities\n", "getSBFOutput\n", "getCOMSettings\n", "exeTea\n"}) {
         rig.write(to_bytes(line));
@@ -179,7 +185,7 @@ std::vector<StreamPiece> stream_of(const std::string& name) {
     rig.world = [&](GpsTime time) { return golden_epoch(time, index++); };
     rig.run(3s);
     ask_everything(rig);
-    StreamSplitter every_protocol({.msp = true, .mavlink = true, .sbf = true});
+    StreamSplitter every_protocol({.msp = true, .mavlink = true, .sbf = true, .unicore = true});
     Bytes stream;
     for (const Heard& heard : rig.heard())
         stream.insert(stream.end(), heard.piece.bytes.begin(), heard.piece.bytes.end());

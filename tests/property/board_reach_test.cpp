@@ -39,7 +39,7 @@ BoardProfile eager_board(const std::string& name) {
     board.quirks.default_interference_monitor = true;
     board.timing.answer = Seconds(0.001);
     if (board.maker == MakerKind::sbf) board.sbf_blocks = {"PVTGeodetic", "AttEuler", "RFStatus", "ReceiverTime"};
-    if (board.maker == MakerKind::mtk || board.maker == MakerKind::airoha) {
+    if (board.maker == MakerKind::mtk || board.maker == MakerKind::airoha || board.maker == MakerKind::unicore) {
         board.sentences.clear();
         for (std::size_t i = 0; i < std::size(firmware::nmea_sentence_names); ++i)
             board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});
@@ -98,6 +98,8 @@ Bytes first_setting(MakerKind personality) {
     if (personality == MakerKind::mtk) return spoken("PMTK314,1,1,1,1,1,0,1,1,0,0,0,0,0,0,0,0,0,1,0");
     if (personality == MakerKind::airoha) return spoken("PAIR062,1,0");
     if (personality == MakerKind::sbf) return to_bytes("sso,Stream2,COM1,DOP,sec1\n");
+    if (personality == MakerKind::unicore)
+        return to_bytes("AGRICA 1\r\nUNIHEADINGA 1\r\nRECTIMEA 1\r\nPVTSLNA 1\r\nOBSVMA 1\r\n");
     return spoken("PUBX,40,GSV,0,0,0,0");
 }
 
@@ -117,6 +119,8 @@ std::vector<Bytes> said_each_second(MakerKind personality) {
             return {spoken("PAIR020")};
         case MakerKind::sbf:
             return {to_bytes("grc\n")};
+        case MakerKind::unicore:
+            return {to_bytes("VERSIONA\r\n"), encode(Rtcm3Station{})};
         default:
             return {version, spoken("PMTK605"), to_bytes("grc\n")};
     }
@@ -124,7 +128,7 @@ std::vector<Bytes> said_each_second(MakerKind personality) {
 
 struct Play {
     std::string bytes;  // with the instants at which they left
-    StreamSplitter splitter{StreamProtocols{.msp = true, .mavlink = true, .sbf = true}};
+    StreamSplitter splitter{StreamProtocols{.msp = true, .mavlink = true, .sbf = true, .unicore = true}};
     std::vector<StreamPiece> pieces;
     std::set<Constellation> systems;
 };
@@ -241,7 +245,8 @@ TEST(BoardReach, AMessageIsSentOrItIsSaidThatItIsNot) {
         BoardProfile board = eager_board(name);
         if (board.corrections.rtk) board.config[firmware::key::tmode_mode] = 2;  // RTCM 1005 tells a fixed place
         Player player(board, {.seconds = 6});
-        if (player.receiver().board().maker == MakerKind::sbf) continue;  // its streams are its client's choice
+        const MakerKind maker = player.receiver().board().maker;
+        if (maker == MakerKind::sbf || maker == MakerKind::unicore) continue;  // streams are their clients' choice
         const std::set<std::string> sent = names_of(player.play());
         for (const firmware::OutputMessage& message : firmware::output_messages()) {
             const bool here = sends_periodically(used(player.receiver()), message.id);

@@ -47,7 +47,8 @@ enum class MakerKind {
     msp,      ///< MSP2_SENSOR_GPS of the MultiWii Serial Protocol
     msp_v1,   ///< its older MSP_SET_RAW_GPS
     mavlink,  ///< MAVLink GPS_INPUT
-    sbf       ///< Septentrio's blocks
+    sbf,      ///< Septentrio's blocks
+    unicore   ///< Unicore's text commands, its logs in ASCII and binary
 };
 
 /// At which speed the answer leaves to a message that changes the speed of the port it came by.
@@ -145,11 +146,20 @@ struct GnssBlock {
 
 /// How fields of sentences look, where makers differ; the defaults are u-blox's (RECEIVER.md 5.3, 5.8 to 5.10).
 struct NmeaStyle {
-    int speed_decimals = 3;         ///< of RMC (knots) and VTG (knots, km/h)
-    int course_decimals = 2;        ///< of RMC and VTG
-    bool course_always = false;     ///< the course is printed even at rest and frozen
-    bool satellites_padded = true;  ///< numSV of GGA and GNS in two digits: "07", not "7"
+    int speed_decimals = 3;                                 ///< of RMC (knots) and VTG (knots, km/h)
+    int course_decimals = 2;                                ///< of RMC and VTG
+    bool course_always = false;                             ///< the course is printed even at rest and frozen
+    bool satellites_padded = true;                          ///< numSV of GGA and GNS in two digits: "07", not "7"
+    int vtg_speed_decimals = -1, vtg_course_decimals = -1;  ///< of VTG alone; -1: as in RMC
+    int altitude_decimals = 1;                              ///< of GGA and GNS
     int dop_decimals = 2;
+    double unknown_dop = 99.99;    ///< of what was not computed
+    bool magnetic_fields = false;  ///< RMC has a magnetic variation, 0.0,E, and VTG the magnetic course, the true one
+    std::string rmc_status = "V";  ///< the last letter of a valid RMC since 4.10, its navigational status
+    bool gsa_manual = false;       ///< GSA says M whatever chooses between 2D and 3D
+    /// Lists have what is tracked alone: GSV no satellites without a signal, GSA no systems without one in use. Without
+    /// any there is one sentence of GP, that of GSA without a mode and that of GSV with the fields of one satellite.
+    bool tracked_only = false;
     std::string station_field;         ///< of GGA without corrections: empty, or "0000"
     std::string beidou_talker = "GB";  ///< or "BD"
     std::string qzss_talker = "GQ";    ///< or "QZ"; of versions in which QZSS has its own

@@ -76,6 +76,8 @@ void EpochReporter::send_banner(GpsTime now, bool woken) {
         if (line == antenna_text(AntennaStatus::unknown)) reported_antenna_ = AntennaStatus::unknown;
         parts_.send_text(text_notice, line, now);
     }
+    for (const PortUnit& unit : parts_.units)
+        parts_.send(unit.id, parts_.maker->greeting(unit.id), now);
 }
 
 }  // namespace skyloop::firmware

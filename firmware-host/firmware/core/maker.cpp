@@ -21,6 +21,7 @@ std::optional<std::vector<PortMessage>> Maker::correction_reports(const Correcti
 void Maker::restrict(NavigationState&) const {}
 void Maker::follow(const NavigationState&) {}
 std::string_view Maker::navigation_text(bool) const { return {}; }
+std::vector<Bytes> Maker::greeting(PortId) const { return {}; }
 void Maker::navigation_restarts(const Forgotten&) {}
 
 Result<void> Maker::configure(const std::map<std::uint32_t, std::uint64_t>& items) {

@@ -112,6 +112,9 @@ public:
     /// What its receivers say when navigation starts or stops; empty: nothing.
     [[nodiscard]] virtual std::string_view navigation_text(bool on) const;
 
+    /// What a port says at a start, after the banner.
+    [[nodiscard]] virtual std::vector<Bytes> greeting(PortId port) const;
+
     /// The receiver starts: the settings in force become the stored ones. @param keeps_ram it was off, with its RAM on
     virtual void restart(bool keeps_ram) = 0;
     virtual void navigation_restarts(const Forgotten& forgotten);

@@ -36,6 +36,12 @@ Observation carried(const Observation& measured, Seconds past) {
     return then;
 }
 
+void tell_given_place(NavigationState& state) {
+    if (state.epoch.fix.type != FixType::time_only) return;
+    state.epoch.fix.type = FixType::fix_3d;
+    state.place_given = true;
+}
+
 Geodetic carried(const Geodetic& from, const VelocityNed& velocity, Seconds time) {
     const double t = time.value();
     return to_geodetic(

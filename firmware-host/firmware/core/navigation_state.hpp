@@ -168,6 +168,9 @@ void carry_to_clock_instant(NavigationState& state);
 /// epochs of ZED-F9T, M8P and M8T).
 Observation carried(const Observation& measured, Seconds past);
 
+/// What stands where it was told and solves the time alone has that place for its position.
+void tell_given_place(NavigationState& state);
+
 /// Where one comes from there with that velocity.
 Geodetic carried(const Geodetic& from, const VelocityNed& velocity, Seconds time);
 

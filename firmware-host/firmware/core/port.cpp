@@ -150,7 +150,7 @@ std::uint32_t bus_speed(PortId port) {
 std::uint32_t factory_baud(PortId port, const BoardProfile& board) {
     constexpr std::uint32_t of_uart2 = 38'400;
     if (!is_uart(port)) return bus_speed(port);
-    return port == PortId::uart1 ? board.baud : of_uart2;
+    return port == PortId::uart2 ? of_uart2 : board.baud;
 }
 
 void Outbox::plan(GpsTime at, Action action) { plans_.emplace(at, std::move(action)); }

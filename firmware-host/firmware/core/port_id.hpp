@@ -8,13 +8,13 @@
 
 namespace skyloop::firmware {
 
-/// As CFG-PRT numbers them (u-blox M8 interface description, 32.11.23).
-enum class PortId : std::uint8_t { i2c = 0, uart1 = 1, uart2 = 2, usb = 3, spi = 4 };
-inline constexpr std::size_t port_count = 5;
+/// The first five as CFG-PRT numbers them (u-blox M8 interface description, 32.11.23); u-blox has no third UART.
+enum class PortId : std::uint8_t { i2c = 0, uart1 = 1, uart2 = 2, usb = 3, spi = 4, uart3 = 5 };
+inline constexpr std::size_t ublox_port_count = 5, port_count = 6;
 /// As board files and port URIs name them, in the order of PortId.
-inline constexpr std::array<std::string_view, port_count> port_names{"i2c", "uart1", "uart2", "usb", "spi"};
+inline constexpr std::array<std::string_view, port_count> port_names{"i2c", "uart1", "uart2", "usb", "spi", "uart3"};
 
-constexpr bool is_uart(PortId port) { return port == PortId::uart1 || port == PortId::uart2; }
+constexpr bool is_uart(PortId port) { return port == PortId::uart1 || port == PortId::uart2 || port == PortId::uart3; }
 
 /// Classes of UBX messages that the receiver treats apart; sentences and RTCM have classes too where CFG-MSG names
 /// them (u-blox M8 interface description, 32.8 and 31.1.5).

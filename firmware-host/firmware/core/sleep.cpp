@@ -6,7 +6,7 @@
 namespace skyloop::firmware {
 namespace {
 
-// UART2 and I2C wake nobody.
+// UART2, UART3 and I2C wake nobody.
 std::uint32_t wake_source(PortId port) {
     switch (port) {
         case PortId::uart1:
@@ -17,6 +17,7 @@ std::uint32_t wake_source(PortId port) {
             return wake_by_usb;
         case PortId::i2c:
         case PortId::uart2:
+        case PortId::uart3:
             break;
     }
     return 0;

@@ -123,13 +123,19 @@ Ths ths(const NmeaReport& r) {
 
 Rmc rmc(const NmeaReport& r) { return {r.talker, r.time, r.valid, r.position, r.speed, r.course, r.date, r.mode}; }
 
+// Receivers whose lists have what is tracked alone say GP while there is nothing (capture of a UM980,
+// jclark/satpulse, gps/testdata/packets/unicore/UM980/nmea-default.jsonl).
+std::string talker_of_lists(const NmeaReport& r) {
+    return r.context.board.style.tracked_only && !r.valid ? "GP" : r.talker;
+}
+
 std::vector<NmeaMessage> messages_of(NmeaSentence sentence, const NmeaReport& r) {
     const auto all = [](const auto& list) { return std::vector<NmeaMessage>(list.begin(), list.end()); };
     switch (sentence) {
         case NmeaSentence::rmc:
             return {rmc(r)};
         case NmeaSentence::vtg:
-            return {Vtg{r.talker, r.course, r.speed, r.course_mode}};
+            return {Vtg{talker_of_lists(r), r.course, r.speed, r.course_mode}};
         case NmeaSentence::gga:
             return {gga(r)};
         case NmeaSentence::gns:

@@ -147,7 +147,7 @@ int tracked_signal_id(const NmeaReport& report, Constellation constellation, Sig
 }
 
 std::optional<Dop> shown_dops(const NmeaReport& report) {
-    constexpr double not_computed = 99.99;
+    const double not_computed = report.context.board.style.unknown_dop;
     if (has_dops(report.fix())) return report.fix().dop;
     if (report.context.board.style.zeros_without_fix) return std::nullopt;
     return Dop{.pdop = not_computed, .hdop = not_computed, .vdop = not_computed};
@@ -158,10 +158,17 @@ NmeaFormat nmea_format(const BoardProfile& board, const ReceiverConfig& config) 
     NmeaFormat format{.version = config.nmea.version,
                       .time_decimals = board.time_decimals,
                       .coordinate_decimals = board.coordinate_decimals,
+                      .altitude_decimals = board.style.altitude_decimals,
                       .limit_82 = config.nmea.limit_82,
                       .speed_decimals = board.style.speed_decimals,
                       .course_decimals = board.style.course_decimals,
+                      .vtg_speed_decimals = board.style.vtg_speed_decimals,
+                      .vtg_course_decimals = board.style.vtg_course_decimals,
+                      .magnetic_fields = board.style.magnetic_fields,
+                      .rmc_status = board.style.rmc_status.empty() ? 'V' : board.style.rmc_status.front(),
+                      .empty_gsv_fields = board.style.tracked_only,
                       .dop_decimals = board.style.dop_decimals,
+                      .most_dop = board.style.unknown_dop,
                       .satellites_padded = board.style.satellites_padded,
                       .units_always = board.style.zeros_without_fix,
                       .deviations_padded = board.style.gst_padded,

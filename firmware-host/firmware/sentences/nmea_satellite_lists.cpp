@@ -79,6 +79,7 @@ std::vector<ListedSatellite> untracked_ones(const NmeaReport& r, const NmeaGroup
 // have a list of their own under signal 0 (captures of M9N and F9R; RECEIVER.md 5.6).
 SignalGroups lists_of(const NmeaReport& r, const NmeaGroup& group) {
     SignalGroups signals = tracked_signals(r, group);
+    if (r.context.board.style.tracked_only) return signals;
     if (r.format.version < NmeaVersion::v4_10) {
         std::vector<ListedSatellite> strongest;
         for (const SatelliteStatus& s : r.satellites)
@@ -122,21 +123,30 @@ void append_pages(std::vector<Gsv>& out, const NmeaReport& r, const NmeaGroup& g
 }  // namespace
 
 std::vector<Gsv> gsv_messages(const NmeaReport& r) {
+    const bool tracked_only = r.context.board.style.tracked_only;
+    std::vector<NmeaGroup> groups = r.groups;
+    // Such receivers list BeiDou before Galileo (the same capture as in talker_of_lists()).
+    const auto is_beidou = [](const NmeaGroup& group) { return group.system.talker == "GB"; };
+    const auto galileo =
+        std::ranges::find_if(groups, [](const NmeaGroup& group) { return group.system.talker == "GA"; });
+    if (tracked_only) std::stable_partition(galileo, groups.end(), is_beidou);
     std::vector<Gsv> out;
-    for (const NmeaGroup& group : r.groups) {
+    for (const NmeaGroup& group : groups) {
         const SignalGroups lists = lists_of(r, group);
         if (!lists.empty())
             append_pages(out, r, group, lists);
-        else
+        else if (!tracked_only)
             out.push_back(gsv_pages(group.talker, {}, signal_of_stub(r, group)).front());
     }
+    if (out.empty() && tracked_only) out.push_back(gsv_pages("GP", {}, std::nullopt).front());
     return out;
 }
 
 std::vector<Gsa> gsa_messages(const NmeaReport& r) {
     Gsa m;
     m.talker = r.talker;
-    m.automatic = r.context.config.limits.mode == FixMode::automatic;
+    const NmeaStyle& style = r.context.board.style;
+    m.automatic = r.context.config.limits.mode == FixMode::automatic && !style.gsa_manual;
     m.fix_mode = r.fix_mode;
     if (const auto dops = shown_dops(r)) {
         m.pdop = dops->pdop;
@@ -151,9 +161,14 @@ std::vector<Gsa> gsa_messages(const NmeaReport& r) {
             const auto number = nmea_satellite_number(s.id, r.format.version, r.numbering);
             if (number && r.belongs(s.id, group)) m.satellites.push_back(*number);
         }
-        out.push_back(m);
+        if (!style.tracked_only || !m.satellites.empty()) out.push_back(m);
     }
-    return out;
+    if (!out.empty() || !style.tracked_only) return out;
+    Gsa none;
+    none.talker = "GP";
+    none.has_mode = false;
+    none.fix_mode = r.fix_mode;
+    return {none};
 }
 
 std::vector<Grs> grs_messages(const NmeaReport& r) {

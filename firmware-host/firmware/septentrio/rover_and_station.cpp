@@ -73,12 +73,6 @@ void withhold_forbidden(const SeptentrioSettings& settings, NavigationState& sta
     state.kind_forbidden = true;
 }
 
-void tell_given_place(NavigationState& state) {
-    if (state.epoch.fix.type != FixType::time_only) return;
-    state.epoch.fix.type = FixType::fix_3d;
-    state.place_given = true;
-}
-
 std::optional<std::uint64_t> model_of_motion(std::string_view motion) {
     constexpr std::uint64_t stationary = 2, pedestrian = 3, automotive = 4, airborne_4g = 8;
     constexpr std::array<std::pair<std::string_view, std::uint64_t>, 9> models{{{"Static", stationary},

@@ -21,9 +21,6 @@ CorrectionState allowed_corrections(const SeptentrioSettings& settings, Correcti
 /// Takes a solution of a kind that PVTMode does not allow for none.
 void withhold_forbidden(const SeptentrioSettings& settings, NavigationState& state);
 
-/// What stands where it was told (PVTMode Static) and solves the time alone has that place for its position.
-void tell_given_place(NavigationState& state);
-
 /// The number of the dynamic model (dynamic_model_of()) for a motion of ReceiverDynamics; nothing for a word that is
 /// not known.
 std::optional<std::uint64_t> model_of_motion(std::string_view motion);

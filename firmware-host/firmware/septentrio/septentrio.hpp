@@ -1,6 +1,7 @@
 /// Septentrio's receivers: a command line, SBF, sentences, RTCM 3.
 #pragma once
 
+#include "firmware/core/command_line_reader.hpp"
 #include "firmware/septentrio/console.hpp"
 
 namespace skyloop::firmware {

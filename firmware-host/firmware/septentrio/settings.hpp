@@ -118,18 +118,4 @@ std::string wrong_argument(std::string_view command, std::initializer_list<std::
 /// Parts between separators, without spaces around them.
 std::vector<std::string> split_words(std::string_view text, char separator);
 
-/// Cuts what a client writes into lines. Frames of RTCM 3 and what else is no text are left out.
-/// State: the line that has begun.
-class CommandLineReader {
-public:
-    /// Lines that are whole now, without their ends; empty ones too.
-    std::vector<std::string> feed(ByteSpan bytes);
-
-private:
-    std::string line_;
-    Bytes head_;            // of a frame of RTCM 3 that has begun
-    std::size_t skip_ = 0;  // bytes of it that are still to come
-    bool after_return_ = false;
-};
-
 }  // namespace skyloop::firmware

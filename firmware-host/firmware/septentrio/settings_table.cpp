@@ -248,6 +248,7 @@ std::string_view descriptor_of(PortId port) {
             return "USB1";
         case PortId::i2c:
         case PortId::spi:
+        case PortId::uart3:
             break;
     }
     return {};

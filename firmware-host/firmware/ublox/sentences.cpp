@@ -28,7 +28,7 @@ void set_pubx_rates(const SentenceView& sentence, const BoardProfile& board, Con
     if (message == nullptr || message->id.message_class != class_nmea || !sends_message(board, message->id)) return;
     if (sentence.fields.size() < first + fewest_ports) return;
     std::vector<int> rates;
-    for (std::size_t at = first; at < std::min(first + port_count, sentence.fields.size()); ++at) {
+    for (std::size_t at = first; at < std::min(first + ublox_port_count, sentence.fields.size()); ++at) {
         const auto rate = number_in<int>(sentence.field(at));
         if (!rate || *rate < 0 || *rate > most) return;
         rates.push_back(*rate);
@@ -58,7 +58,7 @@ void set_port_by_pubx(const SentenceView& sentence, const BoardProfile& board, C
     const auto number = number_in<int>(sentence.field(1));
     const auto in = hexadecimal_mask(sentence.field(2)), out = hexadecimal_mask(sentence.field(3));
     const auto baud = number_in<int>(sentence.field(4));
-    if (!number || *number < 0 || *number >= static_cast<int>(port_count) || !in || !out) return;
+    if (!number || *number < 0 || *number >= static_cast<int>(ublox_port_count) || !in || !out) return;
     const auto port = static_cast<PortId>(*number);
     if (!pubx_port_exists(board, port)) return;
     if (is_uart(port)) {

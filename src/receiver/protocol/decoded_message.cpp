@@ -14,6 +14,8 @@
 #include "receiver/protocol/known_sbf.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
 #include "receiver/protocol/msp.hpp"
+#include "receiver/protocol/unicore_frame.hpp"
+#include "receiver/protocol/unicore_logs.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
@@ -115,11 +117,70 @@ void list_sbf(const SbfBlockView& block, DecodedMessage& message) {
     if (!known) keep_payload(block.body, message);
 }
 
+template <class Message>
+bool list_unicore_as(const UnicoreFrameView& frame, DecodedMessage& message) {
+    if constexpr (UnicoreBinaryLog<Message>) {
+        if (frame.id != Message::message_id) return false;
+        message.name = Message::message_name;
+        const auto found = decode_front<Message>(frame.payload);
+        if (found) list_message(*found, message);
+        return found.has_value();
+    } else {
+        return false;
+    }
+}
+
+// What a head says stands before the fields of the body.
+void add_unicore_time(const UnicoreHeader& header, DecodedMessage& message) {
+    const auto whole = [](std::int64_t value) { return DecodedValue{value}; };
+    std::vector<DecodedField> fields{{"week", header.time_known ? whole(header.week) : DecodedValue{}},
+                                     {"tow_s", header.time_known ? DecodedValue{header.tow_ms * 1e-3} : DecodedValue{}},
+                                     {"leap_s", whole(header.leap_seconds)}};
+    std::ranges::move(message.fields, std::back_inserter(fields));
+    message.fields = std::move(fields);
+}
+
+void list_unicore_frame(const UnicoreFrameView& frame, DecodedMessage& message) {
+    message.id = fmt::format("{}", frame.id);
+    const bool known = KnownUnicoreLogs::any([&]<class Message>() { return list_unicore_as<Message>(frame, message); });
+    if (!known) keep_payload(frame.payload, message);
+    if (known) add_unicore_time(frame.header, message);
+}
+
+template <class Message>
+bool list_unicore_as(const UnicoreLineView& line, DecodedMessage& message) {
+    if (line.name.substr(0, line.name.size() - 1) != Message::message_name || line.name.back() != 'A') return false;
+    message.name = Message::message_name;
+    const auto found = read_unicore_body<Message>(line.fields);
+    if (found) list_message(*found, message);
+    return found.has_value();
+}
+
+// Of answers, and of logs that are not known, the fields as they stand.
+void list_unicore_line(const UnicoreLineView& line, DecodedMessage& message) {
+    message.id = line.name;
+    const bool known = !line.name.empty() && line.lead == '#' &&
+                       KnownUnicoreLogs::any([&]<class Message>() { return list_unicore_as<Message>(line, message); });
+    if (!known) {
+        std::vector<DecodedValue> fields;
+        for (const std::string_view field : line.fields)
+            fields.push_back({std::string(field)});
+        message.fields.push_back({"fields", {std::move(fields)}});
+    }
+    if (line.header) add_unicore_time(*line.header, message);
+}
+
+void list_unicore(ByteSpan bytes, DecodedMessage& message) {
+    if (const auto frame = parse_unicore_frame(bytes)) return list_unicore_frame(*frame, message);
+    const std::string text = to_string(bytes);
+    if (const auto line = parse_unicore_line(text)) list_unicore_line(*line, message);
+}
+
 }  // namespace
 
 std::string_view stream_kind_name(StreamKind kind) {
-    constexpr std::array<std::string_view, stream_kind_count> names{"ubx", "nmea",    "rtcm3", "noise",
-                                                                    "msp", "mavlink", "sbf",   "command"};
+    constexpr std::array<std::string_view, stream_kind_count> names{"ubx",     "nmea", "rtcm3",   "noise",  "msp",
+                                                                    "mavlink", "sbf",  "command", "unicore"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -143,6 +204,8 @@ DecodedMessage decode_piece(const StreamPiece& piece) {
         if (const auto frame = parse_mavlink(bytes)) list_mavlink(*frame, message);
     } else if (piece.kind == StreamKind::sbf) {
         if (const auto block = parse_sbf(bytes)) list_sbf(*block, message);
+    } else if (piece.kind == StreamKind::unicore) {
+        list_unicore(bytes, message);
     } else if (piece.kind == StreamKind::command) {
         message.fields.push_back({"line", {to_string(bytes)}});
     } else {

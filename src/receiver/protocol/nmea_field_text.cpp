@@ -13,7 +13,6 @@
 namespace skyloop::inline receiver::nmea_encoding {
 namespace {
 
-constexpr double largest_dop = 99.99;
 constexpr std::array<std::int64_t, 10> powers_of_ten{1,       10,        100,        1'000,       10'000,
                                                      100'000, 1'000'000, 10'000'000, 100'000'000, 1'000'000'000};
 
@@ -63,9 +62,9 @@ void add_metres(Sentence& sentence, const std::optional<Metres>& value, int deci
     sentence.text(value ? fixed_decimals(value->value(), decimals) : std::string());
 }
 
-void add_dop(Sentence& sentence, const std::optional<double>& dop, int decimals) {
-    // A DOP that is not a number is as bad as it can be; receivers show such ones as 99.99.
-    const auto shown = [](double d) { return std::isfinite(d) ? std::clamp(d, 0.0, largest_dop) : largest_dop; };
+void add_dop(Sentence& sentence, const std::optional<double>& dop, int decimals, double most) {
+    // A DOP that is not a number is as bad as it can be.
+    const auto shown = [most](double d) { return std::isfinite(d) ? std::clamp(d, 0.0, most) : most; };
     sentence.text(dop ? fixed_decimals(shown(*dop), decimals) : std::string());
 }
 

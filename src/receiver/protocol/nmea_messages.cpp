@@ -31,7 +31,7 @@ std::string gns_text(const Gns& m, const NmeaFormat& format, int coordinate_deci
     for (const NmeaMode mode : m.modes)
         modes += static_cast<char>(mode);
     s.text(modes).number(std::clamp(m.satellites_used, 0, 99), format.satellites_padded ? 2 : 1);
-    add_dop(s, m.hdop, format.dop_decimals);
+    add_dop(s, m.hdop, format.dop_decimals, format.most_dop);
     add_metres(s, m.altitude, format.altitude_decimals);
     add_metres(s, m.geoid_separation, format.altitude_decimals);
     add_decimal(s, m.correction_age ? std::optional(m.correction_age->value()) : std::nullopt, 1);
@@ -141,7 +141,7 @@ std::string gga_text(const Gga& m, const NmeaFormat& format, int coordinate_deci
     add_time(s, m.time, format);
     add_position(s, m.position, coordinate_decimals);
     s.number(m.quality).number(std::clamp(m.satellites_used, 0, 99), format.satellites_padded ? 2 : 1);
-    add_dop(s, m.hdop, format.dop_decimals);
+    add_dop(s, m.hdop, format.dop_decimals, format.most_dop);
     for (const auto& height : {m.altitude, m.geoid_separation}) {
         if (height && std::isfinite(height->value()))
             s.decimal(height->value(), format.altitude_decimals).letter('M');
@@ -202,9 +202,12 @@ std::string encode(const Rmc& m, const NmeaFormat& format) {
     add_position(s, m.position, format.coordinate_decimals);
     add_decimal(s, m.speed ? std::optional(in_knots(*m.speed)) : std::nullopt, format.speed_decimals);
     s.text(m.course ? course_text(*m.course, format.course_decimals) : "").text(m.date ? date_text(*m.date) : "");
-    s.empty(2);  // no magnetic variation
+    if (format.magnetic_fields)
+        s.text("0.0").letter('E');
+    else
+        s.empty(2);
     add_mode(s, m.mode, format);
-    if (since_4_10(format)) s.letter('V');
+    if (since_4_10(format)) s.letter(m.valid ? format.rmc_status : 'V');
     return s.finish();
 }
 
@@ -213,9 +216,13 @@ std::string encode(const Vtg& m, const NmeaFormat& format) {
     if (!m.speed) {
         s.empty(8);
     } else {
-        s.text(m.course ? course_text(*m.course, format.course_decimals) : "").letter('T').empty().letter('M');
-        s.decimal(in_knots(*m.speed), format.speed_decimals).letter('N');
-        s.decimal(in_kmh(*m.speed), format.speed_decimals).letter('K');
+        const auto own = [](int decimals, int of_rmc) { return decimals < 0 ? of_rmc : decimals; };
+        const int speed_decimals = own(format.vtg_speed_decimals, format.speed_decimals);
+        const std::string course =
+            m.course ? course_text(*m.course, own(format.vtg_course_decimals, format.course_decimals)) : "";
+        s.text(course).letter('T').text(format.magnetic_fields ? course : "").letter('M');
+        s.decimal(in_knots(*m.speed), speed_decimals).letter('N');
+        s.decimal(in_kmh(*m.speed), speed_decimals).letter('K');
     }
     add_mode(s, m.mode, format);
     return s.finish();
@@ -228,13 +235,13 @@ std::string encode(const Gga& m, const NmeaFormat& format) {
 
 std::string encode(const Gsa& m, const NmeaFormat& format) {
     Sentence s(m.talker + "GSA");
-    s.letter(m.automatic ? 'A' : 'M').number(m.fix_mode);
+    s.text(m.has_mode ? (m.automatic ? "A" : "M") : "").number(m.fix_mode);
     const std::size_t shown = std::min(m.satellites.size(), gsa_slots);
     for (std::size_t i = 0; i < shown; ++i)
         s.number(m.satellites[i], 2);
     s.empty(static_cast<int>(gsa_slots - shown));
     for (const auto& dop : {m.pdop, m.hdop, m.vdop})
-        add_dop(s, dop, format.dop_decimals);
+        add_dop(s, dop, format.dop_decimals, format.most_dop);
     if (since_4_10(format)) s.text(m.system_id ? hex_text(*m.system_id) : "");
     return s.finish();
 }
@@ -249,7 +256,9 @@ std::string encode(const Gsv& m, const NmeaFormat& format) {
         add_clamped(s, satellite.azimuth_deg ? std::optional(*satellite.azimuth_deg % 360) : std::nullopt, 359, 3);
         add_clamped(s, satellite.cn0_dbhz, 99, 2);
     }
-    if (since_4_10(format)) s.text(m.signal_id ? hex_text(*m.signal_id) : "");
+    const bool empty = m.satellites.empty() && format.empty_gsv_fields;
+    if (empty) s.empty(4);
+    if (since_4_10(format)) s.text(m.signal_id && !empty ? hex_text(*m.signal_id) : "");
     return s.finish();
 }
 

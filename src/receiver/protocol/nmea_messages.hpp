@@ -138,6 +138,7 @@ struct Gga {
 struct Gsa {
     std::string talker = "GN";
     bool automatic = true;        ///< the receiver chooses between 2D and 3D
+    bool has_mode = true;         ///< it says which of both
     int fix_mode = 1;             ///< 1 none, 2 2D, 3 3D
     std::vector<int> satellites;  ///< at most twelve are shown
     std::optional<double> pdop, hdop, vdop;

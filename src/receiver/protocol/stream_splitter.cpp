@@ -10,12 +10,13 @@
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/sbf_frame.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
+#include "receiver/protocol/unicore_frame.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
 
 constexpr std::size_t splitter_ubx_limit = 8192;
-constexpr std::size_t splitter_payload_limit = 8192;  // of MSP and SBF
+constexpr std::size_t splitter_payload_limit = 8192;  // of MSP, SBF and Unicore
 constexpr std::size_t splitter_line_limit = 256;
 constexpr std::size_t splitter_noise_limit = 256;
 constexpr std::uint8_t rtcm3_preamble = 0xD3;
@@ -76,6 +77,21 @@ Candidate sentence_at(ByteSpan bytes) {
     return bytes.size() < splitter_line_limit ? unfinished_piece : no_piece;
 }
 
+// A line of Unicore's, longer than any sentence: one of measurements has some 60 characters for each signal.
+Candidate unicore_line_at(ByteSpan bytes) {
+    const std::size_t seen = std::min(bytes.size(), splitter_payload_limit);
+    for (std::size_t i = 1; i < seen; ++i) {
+        const std::uint8_t byte = bytes[i];
+        if (byte == '\n') {
+            const std::string_view line(reinterpret_cast<const char*>(bytes.data()), i);
+            if (!parse_unicore_line(line)) return bytes[0] == '#' ? bad_piece(StreamKind::unicore) : no_piece;
+            return {Candidate::Verdict::whole, StreamKind::unicore, i + 1};
+        }
+        if (byte == bytes[0] || (byte != '\r' && (byte < 0x20 || byte > 0x7E))) return no_piece;
+    }
+    return bytes.size() < splitter_payload_limit ? unfinished_piece : no_piece;
+}
+
 // A frame of which the head is there, and has told its size.
 template <class Parse>
 Candidate framed_at(ByteSpan bytes, StreamKind kind, std::optional<std::size_t> size, Parse parse) {
@@ -97,6 +113,14 @@ Candidate sbf_at(ByteSpan bytes) {
     return framed_at(bytes, StreamKind::sbf, sbf_block_size(bytes), parse_sbf);
 }
 
+Candidate unicore_at(ByteSpan bytes) {
+    constexpr std::uint8_t sync[] = {unicore_sync_1, unicore_sync_2, unicore_sync_3};
+    for (std::size_t i = 1; i < std::min(bytes.size(), std::size(sync)); ++i)
+        if (bytes[i] != sync[i]) return no_piece;
+    if (bytes.size() < unicore_head_size) return unfinished_piece;
+    return framed_at(bytes, StreamKind::unicore, unicore_frame_size(bytes), parse_unicore_frame);
+}
+
 Candidate mavlink_at(ByteSpan bytes) {
     if (bytes.size() < (bytes[0] == mavlink_v1_start ? mavlink_v1_head_size : mavlink_v2_head_size))
         return unfinished_piece;
@@ -113,7 +137,13 @@ Candidate dollar_at(ByteSpan bytes, const StreamProtocols& protocols) {
         const Candidate found = msp_at(bytes);
         if (found.verdict != Candidate::Verdict::nothing || !protocols.nmea) return found;
     }
-    return protocols.nmea ? sentence_at(bytes) : no_piece;
+    const Candidate sentence = protocols.nmea ? sentence_at(bytes) : no_piece;
+    if (!protocols.unicore || sentence.verdict == Candidate::Verdict::whole ||
+        sentence.verdict == Candidate::Verdict::unfinished)
+        return sentence;
+    // An answer is a sentence whose checksum covers its dollar, too.
+    const Candidate answer = unicore_line_at(bytes);
+    return answer.verdict == Candidate::Verdict::whole ? answer : sentence;
 }
 
 Candidate piece_at(ByteSpan bytes, const StreamProtocols& protocols) {
@@ -125,6 +155,10 @@ Candidate piece_at(ByteSpan bytes, const StreamProtocols& protocols) {
         case mavlink_v1_start:
         case mavlink_v2_start:
             return protocols.mavlink ? mavlink_at(bytes) : no_piece;
+        case unicore_sync_1:
+            return protocols.unicore ? unicore_at(bytes) : no_piece;
+        case '#':
+            return protocols.unicore ? unicore_line_at(bytes) : no_piece;
         case '$':
             return dollar_at(bytes, protocols);
         case '!':

@@ -8,13 +8,14 @@
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 #include "receiver/protocol/ubx_messages.hpp"
+#include "receiver/protocol/unicore_frame.hpp"
 #include "run/fault/known_names.hpp"
 
 namespace skyloop::inline run {
 namespace {
 
 constexpr StreamProtocols client_protocols{};
-constexpr StreamProtocols receiver_protocols{.msp = true, .mavlink = true, .sbf = true};
+constexpr StreamProtocols receiver_protocols{.msp = true, .mavlink = true, .sbf = true, .unicore = true};
 
 std::string ubx_name(ByteSpan frame) {
     const auto parsed = parse_frame(frame);
@@ -39,6 +40,13 @@ std::string rtcm_name(ByteSpan frame) {
     return fmt::format("RTCM-{}", frame[3] << 4 | frame[4] >> 4);
 }
 
+// Of a log as text or an answer; logs in binary have no name of their own here.
+std::string unicore_name(ByteSpan message) {
+    const std::string text = base::to_string(message);
+    const auto line = parse_unicore_line(text);
+    return line ? std::string(line->name) : "UNICORE";
+}
+
 bool is_text(const StreamPiece& piece) {
     return piece.kind == StreamKind::noise &&
            std::all_of(piece.bytes.begin(), piece.bytes.end(),
@@ -61,6 +69,8 @@ std::string message_name(StreamKind kind, ByteSpan message) {
             return "MAVLink";
         case StreamKind::sbf:
             return "SBF";
+        case StreamKind::unicore:
+            return unicore_name(message);
         case StreamKind::command:
             return command_line_name(base::to_string(message)).value_or("command");
         case StreamKind::noise:
@@ -71,7 +81,7 @@ std::string message_name(StreamKind kind, ByteSpan message) {
 
 Dialogue::Ends& Dialogue::ends(std::size_t wire) {
     while (ends_.size() <= wire)
-        ends_.push_back({PatientSplitter(client_protocols), StreamSplitter(receiver_protocols), {}});
+        ends_.push_back({PatientSplitter(client_protocols), StreamSplitter(receiver_protocols)});
     return ends_[wire];
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/septentrio/settings.hpp"
+#include "firmware/core/command_line_reader.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "run/fault/run_observer.hpp"
 #include "wire/transport/transport.hpp"

@@ -267,8 +267,8 @@ Result<NamedParts> named_parts(const SharedParts& shared, std::size_t index, std
     auto board = board_of(entry, shared.data);
     if (!board) note(at_key("board", board.error(), entry));
     firmware::BoardProfile any;
-    any.ports = {firmware::PortId::i2c, firmware::PortId::uart1, firmware::PortId::uart2, firmware::PortId::usb,
-                 firmware::PortId::spi};
+    any.ports = {firmware::PortId::i2c, firmware::PortId::uart1, firmware::PortId::uart2,
+                 firmware::PortId::usb, firmware::PortId::spi,   firmware::PortId::uart3};
     auto wires = wires_of(entry, board ? *board : any);
     if (!wires) note(at_key("port", wires.error(), entry));
     const auto corrections = corrections_of(entry, board ? *board : any);

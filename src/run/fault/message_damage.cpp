@@ -8,6 +8,7 @@
 #include "receiver/protocol/mavlink.hpp"
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
+#include "receiver/protocol/unicore_frame.hpp"
 
 namespace skyloop::inline run {
 namespace {
@@ -20,7 +21,7 @@ constexpr Nanoseconds longest_message = std::chrono::seconds(1);
 constexpr Nanoseconds longest_lateness = std::chrono::seconds(2);
 constexpr double longest_pause_s = 1e9;
 
-constexpr StreamProtocols wire_protocols{true, true, true, true, true, true};
+constexpr StreamProtocols wire_protocols{true, true, true, true, true, true, true};
 
 constexpr std::size_t rtcm3_payload_at = 3;  // RTCM 10403.3, section 4.2
 constexpr std::size_t sbf_payload_at = 8;    // after sync, CRC, ID and length
@@ -76,6 +77,11 @@ void turn_bit_of_sentence(Bytes& message, RandomStream& random) {
     if (star_at + 2 < message.size()) message[star_at + 2] ^= 1U;
 }
 
+void turn_bit_of_unicore(Bytes& message, RandomStream& random) {
+    if (message[0] == unicore_sync_1) return turn_bit_from(message, unicore_head_size, random);
+    turn_bit_of_sentence(message, random);
+}
+
 }  // namespace
 
 void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
@@ -92,6 +98,8 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
             return turn_bit_from(message, message[1] == 'M' ? msp_v1_head_size : msp_v2_head_size, random);
         case StreamKind::mavlink:
             return turn_bit_of_mavlink(message, random);
+        case StreamKind::unicore:
+            return turn_bit_of_unicore(message, random);
         case StreamKind::noise:
         case StreamKind::command:
             return;

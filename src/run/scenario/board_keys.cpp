@@ -139,6 +139,8 @@ void read_board_uart(TableReader& uart, BoardProfile& board) {
         board.ports.clear();
         for (const std::size_t port : *ports)
             board.ports.push_back(static_cast<PortId>(port));
+        if (board.maker == MakerKind::ublox && std::ranges::count(board.ports, PortId::uart3) > 0)
+            uart.mistake("ports", "has uart3, which no u-blox receiver has");
         std::sort(board.ports.begin(), board.ports.end());
     }
 }
@@ -214,6 +216,7 @@ void check_factory_config(TableReader& top, const BoardProfile& board) {
 constexpr std::array<std::string_view, 6> board_talkers{"GP", "GL", "GA", "GB", "GQ", "GN"};
 constexpr std::array<std::string_view, 2> beidou_talkers{"GB", "BD"}, qzss_talkers{"GQ", "QZ"};
 constexpr std::array<std::string_view, 2> station_fields{"", "0000"};
+constexpr std::array<std::string_view, 4> rmc_statuses{"S", "C", "U", "V"};
 
 void read_board_sentences(TableReader& rates, std::vector<firmware::SentenceRate>& sentences) {
     for (std::size_t i = 0; i < std::size(firmware::nmea_sentence_names); ++i) {
@@ -233,11 +236,19 @@ void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
     nmea.integer("course_decimals", style.course_decimals, {0, 3});
     nmea.boolean("course_always", style.course_always);
     nmea.boolean("satellites_padded", style.satellites_padded);
+    nmea.integer("vtg_speed_decimals", style.vtg_speed_decimals, {-1, 5});
+    nmea.integer("vtg_course_decimals", style.vtg_course_decimals, {-1, 5});
+    nmea.integer("altitude_decimals", style.altitude_decimals, {0, 4});
     nmea.integer("dop_decimals", style.dop_decimals, {0, 3});
+    nmea.number("unknown_dop", style.unknown_dop, {0, 9999});
+    nmea.boolean("magnetic_fields", style.magnetic_fields);
+    nmea.boolean("gsa_manual", style.gsa_manual);
+    nmea.boolean("tracked_only", style.tracked_only);
     nmea.boolean("gst_ellipse", style.gst_ellipse);
     nmea.boolean("gst_padded", style.gst_padded);
     nmea.boolean("zeros_without_fix", style.zeros_without_fix);
     nmea.boolean("unknown_date_is_1980", style.unknown_date_is_1980);
+    read_one_of(nmea, "rmc_status", rmc_statuses, style.rmc_status);
     read_one_of(nmea, "station_field", station_fields, style.station_field);
     read_one_of(nmea, "beidou_talker", beidou_talkers, style.beidou_talker);
     read_one_of(nmea, "qzss_talker", qzss_talkers, style.qzss_talker);
@@ -325,7 +336,7 @@ void read_board_nmea(TableReader& nmea, firmware::BoardProfile& board) {
               board.satellite_numbering);
     nmea.text("main_talker", board.main_talker);
     if (!board.main_talker.empty()) nmea.choice("main_talker", board_talkers);
-    nmea.integer("coordinate_decimals", board.coordinate_decimals, {3, 7});
+    nmea.integer("coordinate_decimals", board.coordinate_decimals, {3, 8});
     nmea.integer("time_decimals", board.time_decimals, {0, 3});
     nmea.integer("max_listed_satellites", board.max_listed_satellites, {4, 99});
     nmea.quantity("course_min_speed_mps", board.course_min_speed, {0, 10});

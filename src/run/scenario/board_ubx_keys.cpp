@@ -176,7 +176,7 @@ void leave_out_rates_of_others(BoardProfile& board) {
     for (const firmware::OutputMessage& message : firmware::output_messages()) {
         const bool listed = board.items_of != nullptr && firmware::is_of_ublox(message.i2c_key);
         if (listed || firmware::sends(board, message.id)) continue;
-        for (std::uint32_t port = 0; port < firmware::port_count; ++port)
+        for (std::uint32_t port = 0; port < firmware::ublox_port_count; ++port)
             board.absent_keys.insert(message.i2c_key + port);
     }
 }

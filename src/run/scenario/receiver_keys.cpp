@@ -45,7 +45,7 @@ Phrases unsent_rates(const UsedReceiver& receiver, const ReceiverEntry& entry, c
     Phrases idle;
     for (const auto& [item, value] : entry.config)
         for (const firmware::OutputMessage& message : firmware::output_messages()) {
-            const bool is_rate = item >= message.i2c_key && item < message.i2c_key + firmware::port_count;
+            const bool is_rate = item >= message.i2c_key && item < message.i2c_key + firmware::ublox_port_count;
             if (is_rate && value > 0 && !sends_periodically(receiver, message.id))
                 idle.push_back(
                     fmt::format("has {} and never sends {}", firmware::find_config_key(item)->name, message.name));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "firmware/core/base_station.hpp"
+#include "firmware/core/command_line_reader.hpp"
 #include "firmware/core/receiver.hpp"
 #include "firmware/septentrio/console.hpp"
 #include "firmware/septentrio/sbf_messages.hpp"

@@ -96,6 +96,9 @@ TEST(BoardFile, ShippedBoardsHaveTheMakersFactorySettings) {
     EXPECT_EQ(board("msp-gps").maker, firmware::MakerKind::msp);
     EXPECT_EQ(board("mavlink-gps-input").maker, firmware::MakerKind::mavlink);
     EXPECT_EQ(board("septentrio-sbf").maker, firmware::MakerKind::sbf);
+    EXPECT_EQ(board("unicore-um980").maker, firmware::MakerKind::unicore);
+    EXPECT_EQ(board("unicore-um982").identity.hardware, "UM982");
+    EXPECT_EQ(board("unicore-um982").ports.size(), 3u);
     EXPECT_EQ(board("nmea-generic").baud, 9600U);
     EXPECT_EQ(board("nmea-generic").sentences.size(), 8U);
 }

@@ -252,7 +252,7 @@ public:
 
 private:
     void add_rates(std::uint32_t i2c_key, std::string_view stem, FirmwareLists lists, std::uint64_t factory) {
-        for (std::uint32_t port = 0; port < port_count; ++port) {
+        for (std::uint32_t port = 0; port < ublox_port_count; ++port) {
             names_.push_back("CFG-MSGOUT-" + std::string(stem) + std::string(rate_key_endings[port]));
             keys_.push_back({i2c_key + port, names_.back(), ConfigType::u1, factory, lists});
         }

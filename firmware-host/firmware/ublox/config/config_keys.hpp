@@ -150,7 +150,8 @@ struct RateKeys {
     FirmwareLists lists;
 };
 /// As these names end, in the order of PortId.
-inline constexpr std::array<std::string_view, port_count> rate_key_endings{"_I2C", "_UART1", "_UART2", "_USB", "_SPI"};
+inline constexpr std::array<std::string_view, ublox_port_count> rate_key_endings{"_I2C", "_UART1", "_UART2", "_USB",
+                                                                                 "_SPI"};
 /// Ascending by message. A key of the group `private_message_group` is one of our own.
 std::span<const RateKeys> rate_keys();
 

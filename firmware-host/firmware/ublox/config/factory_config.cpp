@@ -24,7 +24,7 @@ std::optional<PortId> port_of(const ConfigKey& key) {
                   {PortId::spi, 0x64, 0x79, 0x7A}};
     constexpr std::uint32_t infmsg = 0x92;
     const std::uint32_t group = key.id >> 16 & 0xFF;
-    if (group == infmsg) return static_cast<PortId>(((key.id & 0xFFFF) - 1) % port_count);
+    if (group == infmsg) return static_cast<PortId>(((key.id & 0xFFFF) - 1) % ublox_port_count);
     if (key.name.starts_with("CFG-MSGOUT-")) {
         const auto ends = [&key](std::string_view ending) { return key.name.ends_with(ending); };
         const auto ending = std::ranges::find_if(rate_key_endings, ends);
@@ -89,7 +89,7 @@ void write_sentences(const BoardProfile& board, FactoryWriter& writer) {
         for (const SentenceRate& sentence : board.sentences)
             if (nmea_sentence_names[static_cast<std::size_t>(sentence.sentence)] == message.name)
                 rate = static_cast<std::uint64_t>(sentence.every_epochs);
-        for (std::uint32_t port = 0; port < port_count; ++port)
+        for (std::uint32_t port = 0; port < ublox_port_count; ++port)
             writer.set(message.i2c_key + port, rate);
     }
 }

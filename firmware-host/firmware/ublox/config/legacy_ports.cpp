@@ -131,7 +131,7 @@ ConfigOutcome poll_rates(const LegacyContext& context, UbxMessageId message) {
     if (!knows(context.board, message)) return legacy_refused();
     CfgMsg answer{message.message_class, message.id, {}};
     if (sends(context.board, message))
-        for (std::size_t port = 0; port < port_count; ++port)
+        for (std::size_t port = 0; port < ublox_port_count; ++port)
             answer.rates[port] = static_cast<std::uint8_t>(context.store.rate(message, static_cast<PortId>(port)));
     return legacy_answered(answer);
 }
@@ -200,7 +200,7 @@ ConfigOutcome legacy_msg(const LegacyContext& context, ByteSpan payload) {
         put_rate(context.from, here->rate);
     } else if (const auto every = decode_payload<CfgMsg>(payload)) {
         message = {every->message_class, every->id};
-        for (std::size_t port = 0; port < port_count; ++port)
+        for (std::size_t port = 0; port < ublox_port_count; ++port)
             put_rate(static_cast<PortId>(port), every->rates[port]);
     }
     return knows(context.board, message) ? changes.apply() : legacy_refused();
@@ -212,7 +212,7 @@ ConfigOutcome legacy_inf(const LegacyContext& context, ByteSpan payload) {
         if (texts == Texts::none) return legacy_refused();
         CfgInfItem item;
         item.protocol_id = payload[0];
-        for (std::size_t port = 0; port < port_count && texts == Texts::told; ++port)
+        for (std::size_t port = 0; port < ublox_port_count && texts == Texts::told; ++port)
             item.masks[port] = in_force<std::uint8_t>(context, inf_key(payload[0], static_cast<PortId>(port)));
         return legacy_answered(CfgInf{{item}});
     }
@@ -222,7 +222,7 @@ ConfigOutcome legacy_inf(const LegacyContext& context, ByteSpan payload) {
     for (const CfgInfItem& item : set->protocols) {
         const Texts texts = texts_of(context.board, item.protocol_id);
         if (texts == Texts::none) return legacy_refused();
-        for (std::size_t port = 0; port < port_count && texts == Texts::told; ++port)
+        for (std::size_t port = 0; port < ublox_port_count && texts == Texts::told; ++port)
             changes.put(inf_key(item.protocol_id, static_cast<PortId>(port)), item.masks[port]);
     }
     return changes.apply();

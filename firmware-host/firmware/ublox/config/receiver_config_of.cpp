@@ -261,7 +261,7 @@ ReceiverConfig receiver_config(const ConfigStore& store, const BoardProfile& boa
     config.first_week = static_cast<std::int64_t>(store.value(key::navspg_wknrollover) & 0xFFFFu);
     config.nmea = nmea_config_of(store, board);
     config.nmea.numbers_empty_lists = board.identity.generation >= first_with_numbered_lists;
-    for (std::size_t port = 0; port < port_count; ++port)
+    for (std::size_t port = 0; port < ublox_port_count; ++port)
         config.ports[port] = port_config_of(store, static_cast<PortId>(port));
     return config;
 }

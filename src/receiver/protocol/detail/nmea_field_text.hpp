@@ -26,7 +26,8 @@ std::string date_text(const NmeaDate& date);
 void add_position(Sentence& sentence, const std::optional<NmeaPosition>& position, int decimals);
 void add_decimal(Sentence& sentence, const std::optional<double>& value, int decimals);
 void add_metres(Sentence& sentence, const std::optional<Metres>& value, int decimals);
-void add_dop(Sentence& sentence, const std::optional<double>& dop, int decimals);
+/// @param most what larger ones, and what is not a number, are shown as
+void add_dop(Sentence& sentence, const std::optional<double>& dop, int decimals, double most = 99.99);
 /// Degrees with `decimals` digits in 0 ≤ course < 360: 359.996 is 0.00.
 std::string course_text(Angle course, int decimals);
 /// Two to three digits that mean something: 0.049, 0.98, 3.1, 228650 (captures of F9R and M9N).
