@@ -306,7 +306,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     if (!named) return fail(named.error());
     auto& [board, wires, state] = *named;
     const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, board, index),
-                                            receiver_seed(scenario.run, index), entry.power_up};
+                                            receiver_seed(scenario.run, index), entry.power_up, index};
     warn_of_missing_usb(wires, board, entry, warnings);
     warn_of_deaf_port(wires, board, entry, warnings);
     warn_of_untracked(scenario, board, options.settings, warnings);
