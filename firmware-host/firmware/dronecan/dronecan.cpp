@@ -138,8 +138,9 @@ std::vector<StreamPiece> DronecanMaker::cut(PortUnit& unit, ByteSpan bytes, GpsT
         else if (is_type(*transfer, DronecanMovingBaselineData::type))
             take_rtcm<DronecanMovingBaselineData>(*transfer, unit, now, pieces);
         else
-            pieces.push_back({StreamKind::command,
-                              NodeOutput::lines(*transfer, find_dronecan_type(transfer->kind, transfer->type_id)->signature)});
+            pieces.push_back(
+                {StreamKind::command,
+                 NodeOutput::lines(*transfer, find_dronecan_type(transfer->kind, transfer->type_id)->signature)});
     }
     return pieces;
 }

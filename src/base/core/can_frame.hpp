@@ -19,7 +19,7 @@ struct CanFrame {
 
     std::uint32_t id = 0;  ///< 29 bits, or 11 of a frame that is not extended
     bool extended = true;
-    std::uint8_t size = 0;                       ///< bytes of `data` that count, 0 … 8
+    std::uint8_t size = 0;                        ///< bytes of `data` that count, 0 … 8
     std::array<std::uint8_t, most_bytes> data{};  ///< those behind them are 0
 
     [[nodiscard]] ByteSpan bytes() const { return ByteSpan(data).first(size); }

@@ -39,8 +39,8 @@ struct DronecanFix2 {
     Signed<"msl_height_m*1e-3", 27> msl_height;  ///< above mean sea level
     Single<"velocity_ned_mps", 3> velocity{};
     Unsigned<"satellites", 6> satellites;
-    Unsigned<"status", 2> status;    ///< 0 no fix, 1 time only, 2 2D, 3 3D
-    Unsigned<"mode", 4> mode;        ///< 0 single, 1 DGPS, 2 RTK, 3 PPP
+    Unsigned<"status", 2> status;      ///< 0 no fix, 1 time only, 2 2D, 3 3D
+    Unsigned<"mode", 4> mode;          ///< 0 single, 1 DGPS, 2 RTK, 3 PPP
     Unsigned<"sub_mode", 6> sub_mode;  ///< of DGPS 0 other, 1 SBAS; of RTK 0 float, 1 fixed
     /// m², (m/s)²: the diagonal (6), or the matrix' upper triangle (21) or all of it (36); north, east, down of both.
     BitList<"covariance", HalfBits, 36> covariance;

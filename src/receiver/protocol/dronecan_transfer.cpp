@@ -113,8 +113,7 @@ bool TransferReceiver::continues(Session& session, const Piece& piece, GpsTime n
         session.begun = false;
         ++counts_.unfinished;
     }
-    const bool next =
-        session.begun && session.toggle == piece.toggle && session.transfer_id == piece.transfer_id;
+    const bool next = session.begun && session.toggle == piece.toggle && session.transfer_id == piece.transfer_id;
     if (!next) {
         session.begun = false;
         ++counts_.out_of_order;

@@ -1,7 +1,7 @@
 /// Transfers of DroneCAN: a message, request or response in the frames that carry it.
 ///
-/// Facts: dronecan.github.io, specification 4 (transport layer); dronecan/pydronecan, transport.py. The code is our own,
-/// since Debian has no libcanard.
+/// Facts: dronecan.github.io, specification 4 (transport layer); dronecan/pydronecan, transport.py. The code is our
+/// own, since Debian has no libcanard.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace skyloop::inline receiver {
 /// One transfer. Node ids are 1 … 127; 0 is nobody: the source of an anonymous message, the destination of any message.
 struct DronecanTransfer {
     DronecanKind kind = DronecanKind::message;
-    std::uint16_t type_id = 0;  ///< of an anonymous message its lowest two bits
+    std::uint16_t type_id = 0;   ///< of an anonymous message its lowest two bits
     std::uint8_t priority = 24;  ///< 0 … 31, the lower the sooner
     std::uint8_t source = 0, destination = 0;
     std::uint8_t transfer_id = 0;  ///< 0 … 31
@@ -34,12 +34,12 @@ std::vector<CanFrame> dronecan_frames(const DronecanTransfer& transfer, std::uin
 
 /// What became of the frames that TransferReceiver was given.
 struct DronecanCounts {
-    std::uint64_t transfers = 0;   ///< whole, with a right CRC
-    std::uint64_t malformed = 0;   ///< frames that no transfer has: short ones, standard ids, a wrong first toggle
+    std::uint64_t transfers = 0;     ///< whole, with a right CRC
+    std::uint64_t malformed = 0;     ///< frames that no transfer has: short ones, standard ids, a wrong first toggle
     std::uint64_t out_of_order = 0;  ///< frames whose toggle or transfer id is not the next one, or that nothing began
-    std::uint64_t bad_crc = 0;     ///< transfers
-    std::uint64_t repeated = 0;    ///< transfers that came again
-    std::uint64_t unfinished = 0;  ///< transfers that another one, or 2 s of silence, ended
+    std::uint64_t bad_crc = 0;       ///< transfers
+    std::uint64_t repeated = 0;      ///< transfers that came again
+    std::uint64_t unfinished = 0;    ///< transfers that another one, or 2 s of silence, ended
     [[nodiscard]] bool operator==(const DronecanCounts&) const = default;
 };
 

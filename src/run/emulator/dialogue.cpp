@@ -61,6 +61,8 @@ std::string message_name(StreamKind kind, ByteSpan message) {
             return "MAVLink";
         case StreamKind::sbf:
             return "SBF";
+        case StreamKind::can:
+            return "DroneCAN";
         case StreamKind::command:
             return command_line_name(base::to_string(message)).value_or("command");
         case StreamKind::noise:

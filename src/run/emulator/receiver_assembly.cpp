@@ -169,13 +169,15 @@ Result<std::unique_ptr<PowerSwitch>> power_of(const std::string& uri, const Shar
     return power;
 }
 
-Result<Link> open_wire(const WireRequest& wire, const firmware::Receiver& receiver, const RunMode& mode,
+Result<Link> open_wire(const WireRequest& wire, const firmware::Receiver& receiver, const SharedParts& shared,
                        std::size_t index) {
+    const RunMode& mode = shared.mode;
     const PortSpeed speed = port_speed(receiver, wire.port);
     if (mode.embedding != nullptr && mode.embedding->open_wire)
         if (auto led = mode.embedding->open_wire(index, wire)) return Link(std::move(led), speed, InputPace::at_once);
     const auto client = client_of_uri(wire.uri);
-    auto transport = client ? open_client(*client) : open_transport(wire.uri, usb_face(receiver.board(), wire.port));
+    auto transport = client ? open_client(*client)
+                            : open_transport(wire.uri, usb_face(receiver.board(), wire.port), shared.can_buses.get());
     if (!transport) return fail(transport.error());
     return Link(std::move(*transport), speed, InputPace::line);
 }
@@ -366,7 +368,7 @@ Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::si
             if (!plugged) return fail(of_receiver(plugged.error(), shared.scenario, index));
             continue;
         }
-        auto link = open_wire(wire, station.parts.receiver, shared.mode, index);
+        auto link = open_wire(wire, station.parts.receiver, shared, index);
         if (!link) return fail(of_receiver(link.error(), shared.scenario, index));
         if (shared.mode.virtual_time) link->transport().allow_waiting();
         // The recording stands for a scripted client, which still says what it believes.

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/core/can_frame.hpp"
 #include "receiver/protocol/mavlink.hpp"
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
@@ -20,7 +21,7 @@ constexpr Nanoseconds longest_message = std::chrono::seconds(1);
 constexpr Nanoseconds longest_lateness = std::chrono::seconds(2);
 constexpr double longest_pause_s = 1e9;
 
-constexpr StreamProtocols wire_protocols{true, true, true, true, true, true};
+constexpr StreamProtocols wire_protocols{true, true, true, true, true, true, true};
 
 constexpr std::size_t rtcm3_payload_at = 3;  // RTCM 10403.3, section 4.2
 constexpr std::size_t sbf_payload_at = 8;    // after sync, CRC, ID and length
@@ -76,6 +77,16 @@ void turn_bit_of_sentence(Bytes& message, RandomStream& random) {
     if (star_at + 2 < message.size()) message[star_at + 2] ^= 1U;
 }
 
+// CAN's own CRC is the adapter's affair: what arrives wrong is a byte of data, which the transfer's CRC covers.
+void turn_bit_of_can(Bytes& line, RandomStream& random) {
+    const std::string text = to_string(line);
+    auto frame = parse_slcan_line(std::string_view(text).substr(0, text.find('\r')));
+    if (!frame || frame->size < 2) return;
+    const std::size_t at = drawn_index(random, frame->size - 1U);
+    frame->data[at] = static_cast<std::uint8_t>(frame->data[at] ^ (1U << drawn_index(random, 8)));
+    line = to_bytes(slcan_line(*frame));
+}
+
 }  // namespace
 
 void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
@@ -92,6 +103,8 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
             return turn_bit_from(message, message[1] == 'M' ? msp_v1_head_size : msp_v2_head_size, random);
         case StreamKind::mavlink:
             return turn_bit_of_mavlink(message, random);
+        case StreamKind::can:
+            return turn_bit_of_can(message, random);
         case StreamKind::noise:
         case StreamKind::command:
             return;
@@ -101,7 +114,7 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
 MessageDamage::MessageDamage(std::uint64_t seed, std::string_view stream)
     : splitter_(wire_protocols), corrections_(seed, std::string(stream)) {
     for (const std::string_view of : {"checksum", "place", "truncation", "merging", "duplication", "reordering",
-                                      "garbage", "garbage content", "jitter", "garbage source"})
+                                      "garbage", "garbage content", "jitter", "garbage source", "message loss"})
         random_.emplace_back(seed, std::string(stream) + "." + std::string(of));
     threshold_ = next_threshold();
 }
@@ -121,9 +134,10 @@ void MessageDamage::set(const WireDirection& direction, GpsTime now, std::vector
     integrated_to_ = now;
     direction_ = direction;
     corrections_.set(direction.corrections);
-    active_ = direction.checksum_errors > 0 || direction.truncation > 0 || direction.merging > 0 ||
-              direction.duplication > 0 || direction.reordering > 0 || !direction.garbage.empty() ||
-              direction.jitter.value() > 0 || direction.corrections != CorrectionConditions{};
+    active_ = direction.message_loss > 0 || direction.checksum_errors > 0 || direction.truncation > 0 ||
+              direction.merging > 0 || direction.duplication > 0 || direction.reordering > 0 ||
+              !direction.garbage.empty() || direction.jitter.value() > 0 ||
+              direction.corrections != CorrectionConditions{};
     if (direction.garbage.empty()) {
         integral_ = 0;
         bursts_due_.clear();
@@ -218,6 +232,11 @@ void MessageDamage::cut(Bytes& message) {
 void MessageDamage::damage(StreamPiece piece, GpsTime now, std::vector<TimedBytes>& out) {
     Bytes message = std::move(piece.bytes);
     const std::size_t size = message.size();
+    if (happens(direction_.message_loss, losses)) {
+        counts_.bytes_lost += size;
+        ++counts_.messages_changed;
+        return;
+    }
     bool changed = false;
     if (happens(direction_.checksum_errors, checksums)) {
         spoil_checksum(message, piece.kind, random_[places]);

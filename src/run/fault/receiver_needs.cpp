@@ -95,6 +95,8 @@ bool has_wired_uart1(const UsedReceiver& receiver) {
     return std::find(receiver.wired.begin(), receiver.wired.end(), firmware::PortId::uart1) != receiver.wired.end();
 }
 
+bool is_can_node(const UsedReceiver& receiver) { return receiver.board.maker == firmware::MakerKind::dronecan; }
+
 bool sends_periodically(const UsedReceiver& receiver, UbxMessageId message) {
     using enum Abilities::MessageChoice;
     const BoardProfile& board = receiver.board;
