@@ -34,17 +34,6 @@ constexpr std::uint64_t fnv1a_64(std::string_view text, std::uint64_t basis = 0x
     return digest;
 }
 
-/// CRC-16 with polynomial 0x1021, not reflected. @param before 0xFFFF at first (CRC-16-CCITT of CAN), or 0 (of SBF)
-constexpr std::uint16_t crc16_ccitt(ByteSpan bytes, std::uint16_t before) {
-    unsigned crc = before;
-    for (const std::uint8_t byte : bytes) {
-        crc ^= static_cast<unsigned>(byte) << 8;
-        for (int bit = 0; bit < 8; ++bit)
-            crc = (crc & 0x8000u) != 0 ? (crc << 1 ^ 0x1021u) & 0xFFFFu : crc << 1;
-    }
-    return static_cast<std::uint16_t>(crc);
-}
-
 /// A queue of bytes in one piece, from whose front any number leaves.
 ///
 /// An other end that is always a little behind never empties it: what has left goes with the next bytes that come once

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <utility>
 
+#include "base/core/crc16.hpp"
+
 namespace skyloop::inline receiver {
 namespace {
 

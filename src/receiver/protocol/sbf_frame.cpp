@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "base/core/crc16.hpp"
+
 namespace skyloop::inline receiver {
 namespace {
 

@@ -171,13 +171,12 @@ Result<std::unique_ptr<PowerSwitch>> power_of(const std::string& uri, const Shar
 
 Result<Link> open_wire(const WireRequest& wire, const firmware::Receiver& receiver, const SharedParts& shared,
                        std::size_t index) {
-    const RunMode& mode = shared.mode;
     const PortSpeed speed = port_speed(receiver, wire.port);
-    if (mode.embedding != nullptr && mode.embedding->open_wire)
-        if (auto led = mode.embedding->open_wire(index, wire)) return Link(std::move(led), speed, InputPace::at_once);
+    if (const Embedding* const leads = shared.mode.embedding; leads != nullptr && leads->open_wire)
+        if (auto led = leads->open_wire(index, wire)) return Link(std::move(led), speed, InputPace::at_once);
     const auto client = client_of_uri(wire.uri);
-    auto transport = client ? open_client(*client)
-                            : open_transport(wire.uri, usb_face(receiver.board(), wire.port), shared.can_buses.get());
+    const UsbFace face = usb_face(receiver.board(), wire.port);
+    auto transport = client ? open_client(*client) : open_transport(wire.uri, face, shared.can_buses.get());
     if (!transport) return fail(transport.error());
     return Link(std::move(*transport), speed, InputPace::line);
 }

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <utility>
 
+#include "base/core/crc16.hpp"
 #include "base/core/file_descriptor.hpp"
 
 namespace skyloop::inline wire {
