@@ -43,8 +43,13 @@ public:
     [[nodiscard]] const Transport& line() const { return *line_; }
     [[nodiscard]] std::string notice() const {
         return lost_ == 0 ? line_->notice()
-                          : fmt::format("{}: {} CAN frames were lost, since their reader was too slow",
-                                        line_->description(), lost_);
+                          : fmt::format("{}: {} CAN frames were lost, since their reader was too slow", description(),
+                                        lost_);
+    }
+    /// "/dev/ttyACM0 (slcan)".
+    [[nodiscard]] std::string description() const {
+        const std::string line = line_->description();
+        return line.substr(0, line.rfind(" (")) + " (slcan)";
     }
 
 private:
@@ -73,7 +78,7 @@ public:
     std::vector<std::string> take_news() override { return out_.line().take_news(); }
     [[nodiscard]] std::string failure() const override { return out_.line().failure(); }
     [[nodiscard]] std::string notice() const override { return out_.notice(); }
-    [[nodiscard]] std::string description() const override { return out_.line().description() + ", slcan"; }
+    [[nodiscard]] std::string description() const override { return out_.description(); }
 
 private:
     LineSender out_;
@@ -108,7 +113,7 @@ public:
     std::vector<std::string> take_news() override { return out_.line().take_news(); }
     [[nodiscard]] std::string failure() const override { return out_.line().failure(); }
     [[nodiscard]] std::string notice() const override { return out_.notice(); }
-    [[nodiscard]] std::string description() const override { return out_.line().description() + ", slcan"; }
+    [[nodiscard]] std::string description() const override { return out_.description(); }
 
 private:
     LineSender out_;
@@ -209,7 +214,7 @@ Result<std::unique_ptr<CanEnd>> open_can_end(const CanAddress& address) {
         case CanAddress::Kind::multicast:
             break;
     }
-    return socket_end(open_multicast_bus(address.bus), fmt::format("bus {} (CAN by UDP multicast)", address.bus));
+    return socket_end(open_multicast_bus(address.bus), fmt::format("mcast:{} (can-multicast)", address.bus));
 }
 
 std::size_t CanBus::join() {

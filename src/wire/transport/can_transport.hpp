@@ -34,7 +34,7 @@ public:
     virtual std::vector<CanFrame> receive() = 0;
     /// Somebody is there, as far as one knows.
     virtual bool connected() { return true; }
-    /// "/tmp/can0 (slcan, pty)".
+    /// "/tmp/can0 (slcan)".
     [[nodiscard]] virtual std::string description() const = 0;
 };
 

@@ -39,7 +39,7 @@ TEST(CanTransport, IsAnAdapterForAHost) {
     Line::Ends host;
     const auto bus = std::make_shared<CanBus>(std::move(serve_slcan(std::make_unique<Line>(host)).value()));
     CanTransport node(bus);
-    EXPECT_EQ(node.description(), "line, slcan");
+    EXPECT_EQ(node.description(), "line (slcan)");
     EXPECT_FALSE(node.line().connected) << "the channel is closed";
     node.write(to_bytes("T18042A0A2017D\r"));
     EXPECT_THAT(host.written, IsEmpty());
