@@ -54,7 +54,8 @@ protected:
                     hear(*parse_slcan_line(line));
             if (now < next_epoch) continue;
             receiver->on_epoch(world(now));
-            next_epoch = now + receiver->settings().navigation_period;
+            const Nanoseconds period = receiver->settings().navigation_period;
+            next_epoch = now - now.time_since_epoch() % period + period;
         }
     }
     void hear(const CanFrame& frame) {
@@ -328,7 +329,7 @@ TEST_F(DronecanNode, RefusesAFirmwareUpdateAndLeavesTheRestAlone) {
 TEST_F(DronecanNode, TakesCorrectionsInPieces) {
     switch_on(42);
     Bytes stream;
-    for (const std::uint8_t content : {1, 2, 3}) {
+    for (const std::uint8_t content : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}}) {
         const Bytes frame = encode_rtcm3(Bytes(150, content));
         stream.insert(stream.end(), frame.begin(), frame.end());
     }
@@ -398,8 +399,8 @@ TEST_F(DronecanNode, ShowsTheFaultsOfABus) {
     faults.shares_node_id = true;
     receiver->set_faults(faults);
     came.clear();
-    run(2s);
-    EXPECT_GE(taken.counts().repeated + all<DronecanNodeStatus>().size(), 4U) << "two a second";
+    run(2500ms);
+    EXPECT_EQ(taken.counts().repeated + all<DronecanNodeStatus>().size(), 4U) << taken.counts().repeated << " of them";
     const auto infos = answers_to<DronecanGetNodeInfoResponse>(DronecanGetNodeInfoRequest{});
     EXPECT_GE(infos.size() + taken.counts().repeated, 2U);
 }
