@@ -236,7 +236,6 @@ Abilities dronecan_abilities(const BoardProfile&) {
     return {.choice = Abilities::MessageChoice::rates,
             .heading = true,
             .accuracies = true,
-            .weeks = true,
             .time = true,
             .dead_reckoning = false,
             .corrections = true,

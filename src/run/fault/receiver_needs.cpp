@@ -103,6 +103,7 @@ bool sends_periodically(const UsedReceiver& receiver, UbxMessageId message) {
     if (firmware::makes_nothing_of(message)) return false;
     const bool listed = firmware::sends(board, message);
     const bool sentence = message.message_class == firmware::class_nmea;
+    if (is_can_node(receiver)) return false;  // a bus has messages of its own
     if (sentence && (listed || board.messages.empty()) && is_factory_sentence(board, message)) return true;
     const Abilities can = firmware::abilities(board);
     if (can.choice == command_line) return sentence && (listed || board.messages.empty());
