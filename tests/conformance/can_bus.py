@@ -3,6 +3,7 @@ import dataclasses
 import math
 import os
 import select
+import socket
 import struct
 import time
 
@@ -198,12 +199,20 @@ class Bus:
         """Takes what comes; ends early when `until` says so."""
         end = time.monotonic() + seconds
         while time.monotonic() < end and not until():
-            self.waiting += self.read(min(0.05, seconds))
-            *lines, self.waiting = self.waiting.split(b"\r")
-            for line in lines:
-                line = line.replace(b"\a", b"")
-                if line[:1] == b"T":
-                    self.frame(int(line[1:9], 16), bytes.fromhex(line[10:10 + 2 * int(line[9:10])].decode()))
+            for number_of_frame, data in self.frames(min(0.05, seconds)):
+                self.frame(number_of_frame, data)
+
+    def frames(self, patience):
+        """Id and data of the frames that come."""
+        self.waiting += self.read(patience)
+        *lines, self.waiting = self.waiting.split(b"\r")
+        for line in lines:
+            line = line.replace(b"\a", b"")
+            if line[:1] == b"T":
+                yield int(line[1:9], 16), bytes.fromhex(line[10:10 + 2 * int(line[9:10])].decode())
+
+    def put(self, number_of_frame, data):
+        os.write(self.descriptor, f"T{number_of_frame:08X}{len(data)}{data.hex().upper()}\r".encode())
 
     def frame(self, number_of_frame, data):
         now = time.monotonic()
@@ -263,9 +272,7 @@ class Bus:
             pieces = [whole[at:at + 7] for at in range(0, len(whole), 7)]
         for i, piece in enumerate(pieces):
             tail = (0x80 if i == 0 else 0) | (0x40 if i == len(pieces) - 1 else 0) | (i & 1) << 5 | number_of_transfer
-            data = piece + bytes([tail])
-            line = f"T{number_of_frame:08X}{len(data)}{data.hex().upper()}\r"
-            os.write(self.descriptor, line.encode())
+            self.put(number_of_frame, piece + bytes([tail]))
 
     def ask(self, service, to, patience=3, **fields):
         """The answer of a service; None where none came."""
@@ -279,6 +286,44 @@ class Bus:
 
     def all(self, kind_number):
         return [t for t in self.came if t.kind == "message" and t.type == kind_number]
+
+
+class MulticastBus(Bus):
+    """A bus of UDP multicast on the loopback interface, as ArduPilot's SITL has it (AP_HAL_SITL, CAN_Multicast.cpp)."""
+    PORT, MAGIC = 57732, 0x2934
+
+    def __init__(self, bus, node=127):
+        super().__init__("/dev/null", node)
+        group, here = f"239.65.82.{bus}", socket.inet_aton("127.0.0.1")
+        self.receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.receiver.bind((group, self.PORT))
+        self.receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(group) + here)
+        self.sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, here)
+        self.sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+        self.sender.connect((group, self.PORT))
+
+    def close(self):
+        self.receiver.close()
+        self.sender.close()
+        super().close()
+
+    def frames(self, patience):
+        while select.select([self.receiver], [], [], patience)[0]:
+            patience = 0
+            datagram, sender = self.receiver.recvfrom(100)
+            if sender == self.sender.getsockname():
+                continue
+            magic, crc, flags, number_of_frame = struct.unpack_from("<HHHI", datagram)
+            if magic != self.MAGIC or crc16(datagram[4:]) != crc or flags or not number_of_frame >> 31:
+                self.bad.append(f"datagram {datagram.hex()}")
+                continue
+            yield number_of_frame & 0x1FFFFFFF, datagram[10:]
+
+    def put(self, number_of_frame, data):
+        body = struct.pack("<HI", 0, 1 << 31 | number_of_frame) + data
+        self.sender.send(struct.pack("<HH", self.MAGIC, crc16(body)) + body)
 
 
 def lost(transfers):

@@ -1,6 +1,8 @@
 """A node of DroneCAN on an SLCAN pty against what ArduPilot's driver and its server of node ids need of it."""
 import argparse
-import pathlib
+import os
+import shlex
+import subprocess
 import sys
 import time
 
@@ -20,10 +22,10 @@ def check(good, what):
         raise AssertionError(what)
 
 
-def start(folder, *arguments, duration=120):
+def start(bus, *arguments, duration=120):
     return receiver.Emulator("--board", "dronecan-generic", "--at", ",".join(map(str, receiver.PLACE)), "--start",
-                             receiver.START, "--model", "ideal", "--duration", duration, "--port",
-                             f"dronecan:slcan:pty:{folder}/can0", *arguments)
+                             receiver.START, "--model", "ideal", "--duration", duration, "--port", f"dronecan:{bus}",
+                             *arguments)
 
 
 def gets_an_id(bus):
@@ -97,7 +99,7 @@ def is_configured(bus):
 
 def needs_of_ardupilot():
     with receiver.open_folder() as folder:
-        with start(folder) as emulator:
+        with start(f"slcan:pty:{folder}/can0") as emulator:
             bus = can_bus.Bus(emulator.tty)
             try:
                 answers = bus.open()
@@ -113,9 +115,35 @@ def needs_of_ardupilot():
             check(code == 0, f"skyloop ended {code}: {emulator.log}")
 
 
+def by_multicast():
+    """In a network of this process's own, where no other bus is disturbed."""
+    with start("mcast:3") as emulator:
+        bus = can_bus.MulticastBus(3)
+        try:
+            gets_an_id(bus)
+            is_well(bus)
+            has_fixes(bus, 5)
+            check(not bus.bad, f"damaged transfers: {bus.bad}")
+        finally:
+            bus.close()
+        code = emulator.stop()
+        check(code == 0, f"skyloop ended {code}: {emulator.log}")
+
+
+def in_own_network():
+    """Plays by_multicast() in a network namespace; says so by name where there can be none."""
+    own = ["unshare", "--user", "--map-root-user", "--net", "sh", "-c"]
+    try:
+        subprocess.run([*own, "ip link set lo up"], check=True, capture_output=True, timeout=20)
+    except (OSError, subprocess.SubprocessError) as error:
+        receiver.skip(f"no network namespace can be made for UDP multicast: {error}")
+    command = shlex.join([sys.executable, __file__, "--inside"])
+    subprocess.run([*own, f"ip link set lo up && exec {command}"], check=True, timeout=90)
+
+
 def fifty_hertz(seconds):
     with receiver.open_folder() as folder:
-        with start(folder, "--rate", 50, duration=seconds + 60) as emulator:
+        with start(f"slcan:pty:{folder}/can0", "--rate", 50, duration=seconds + 60) as emulator:
             bus = can_bus.Bus(emulator.tty)
             try:
                 bus.open()
@@ -135,14 +163,20 @@ def fifty_hertz(seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=5, help="how long 50 Hz are listened to")
-    parser.add_argument("--only-rate", action="store_true")
+    parser.add_argument("--seconds", type=float, default=float(os.environ.get("SKYLOOP_SOAK_SECONDS", "5")),
+                        help="how long 50 Hz are listened to")
+    parser.add_argument("--part", choices=("needs", "rate", "multicast"), default="needs")
+    parser.add_argument("--inside", action="store_true", help="of the network that multicast is played in")
     options = parser.parse_args()
-    if not options.only_rate:
+    if options.inside:
+        by_multicast()
+    elif options.part == "needs":
         needs_of_ardupilot()
-    fifty_hertz(options.seconds)
+    elif options.part == "rate":
+        fifty_hertz(options.seconds)
+    else:
+        in_own_network()
 
 
 if __name__ == "__main__":
-    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
     main()

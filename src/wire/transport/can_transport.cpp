@@ -42,9 +42,9 @@ public:
     [[nodiscard]] Transport& line() { return *line_; }
     [[nodiscard]] const Transport& line() const { return *line_; }
     [[nodiscard]] std::string notice() const {
-        return lost_ == 0 ? line_->notice()
-                          : fmt::format("{}: {} CAN frames were lost, since their reader was too slow", description(),
-                                        lost_);
+        return lost_ == 0
+                   ? line_->notice()
+                   : fmt::format("{}: {} CAN frames were lost, since their reader was too slow", description(), lost_);
     }
     /// "/dev/ttyACM0 (slcan)".
     [[nodiscard]] std::string description() const {

@@ -29,7 +29,8 @@ TEST(CanFrame, IsNoneOfOtherTexts) {
 }
 
 TEST(CanFrame, IsALineOfCandump) {
-    EXPECT_EQ(parse_candump_line("(1700000000.123456) can0 18042A0A#017D"), can_frame(0x18042A0A, true, Bytes{1, 0x7D}));
+    EXPECT_EQ(parse_candump_line("(1700000000.123456) can0 18042A0A#017D"),
+              can_frame(0x18042A0A, true, Bytes{1, 0x7D}));
     EXPECT_EQ(parse_candump_line("(1700000000.123456) vcan0 123#"), can_frame(0x123, false, {}));
     EXPECT_EQ(parse_candump_line("(0.1) can0 123#01 R\r"), can_frame(0x123, false, Bytes{1}));
     for (const char* line : {"", "can0 123#01", "(0.1)", "(0.1) can0", "(0.1) can0 123", "(0.1) can0 123##101",

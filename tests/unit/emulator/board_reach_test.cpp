@@ -8,9 +8,9 @@
 #include <map>
 #include <set>
 
+#include "base/core/can_frame.hpp"
 #include "firmware/core/port_id.hpp"
 #include "firmware/ublox/config/config_keys.hpp"
-#include "base/core/can_frame.hpp"
 #include "receiver/protocol/dronecan_transfer.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
@@ -99,9 +99,8 @@ Bytes spoken(const std::string& body) {
 // A request to the node 42, of whose transfers no two in a row have the same id.
 template <class Request>
 Bytes requested(const Request& request, int second) {
-    const DronecanTransfer transfer{Request::type.kind, Request::type.id, 20,
-                                    10,                 42,               static_cast<std::uint8_t>(second % 32),
-                                    encode_bits(request)};
+    const DronecanTransfer transfer{
+        Request::type.kind, Request::type.id, 20, 10, 42, static_cast<std::uint8_t>(second % 32), encode_bits(request)};
     std::string lines;
     for (const CanFrame& frame : dronecan_frames(transfer, Request::type.signature))
         lines += slcan_line(frame);

@@ -81,8 +81,8 @@ protected:
 
     template <class Message>
     void say(const Message& message, std::uint8_t to = 0) {
-        const DronecanTransfer transfer{Message::type.kind, Message::type.id, 20,           autopilot, to,
-                                        next_id,            encode_bits(message)};
+        const DronecanTransfer transfer{Message::type.kind,  Message::type.id, 20, autopilot, to, next_id,
+                                        encode_bits(message)};
         next_id = static_cast<std::uint8_t>((next_id + 1) % 32);
         std::string text;
         for (const CanFrame& frame : dronecan_frames(transfer, Message::type.signature))

@@ -1,4 +1,5 @@
-// Messages of DroneCAN against their DSDL: layouts that were written down here from it, and bytes that pydronecan wrote.
+// Messages of DroneCAN against their DSDL: layouts that were written down here from it, and bytes that pydronecan
+// wrote.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -158,8 +159,7 @@ void expect_layout(const std::string& layout) {
 }
 
 TEST(DronecanMessages, HaveTheLayoutsOfTheirDsdl) {
-    expect_layout<DronecanFix2>(
-        "u56 u56 u3 v13 u8 i37 i37 i27 i27 f32*3 u6 u2 u4 u6 f16[36 f16 u8(99");
+    expect_layout<DronecanFix2>("u56 u56 u3 v13 u8 i37 i37 i27 i27 f32*3 u6 u2 u4 u6 f16[36 f16 u8(99");
     expect_layout<DronecanAuxiliary>("f16 f16 f16 f16 f16 f16 f16 u7 u6");
     expect_layout<DronecanRtcmStream>("u8 u8(128");
     expect_layout<DronecanHeading>("u1 u1 f16 f16");
@@ -168,8 +168,7 @@ TEST(DronecanMessages, HaveTheLayoutsOfTheirDsdl) {
     expect_layout<DronecanRelPosHeading>("u56 u1 f32 f32 f16 f16");
     expect_layout<DronecanNodeStatus>("u32 u2 u3 u3 u16");
     expect_layout<DronecanAllocation>("u7 u1 u8(16");
-    expect_layout<DronecanGetNodeInfoResponse>(
-        "u32 u2 u3 u3 u16 u8 u8 u8 u32 u64 u8 u8 u8*16 u8[255 u8(80");
+    expect_layout<DronecanGetNodeInfoResponse>("u32 u2 u3 u3 u16 u8 u8 u8 u32 u64 u8 u8 u8*16 u8[255 u8(80");
     expect_layout<DronecanRestartNodeRequest>("u40");
     expect_layout<DronecanRestartNodeResponse>("u1");
     expect_layout<DronecanExecuteOpcodeRequest>("u8 i48");
@@ -207,9 +206,10 @@ TEST(DronecanMessages, AreTheBytesThatPydronecanWrites) {
     fix.sub_mode = 1;
     fix.covariance = {1.0F, 1.0F, 2.5F, 0.01F, 0.01F, 0.01F};
     fix.pdop = 1.25F;
-    EXPECT_EQ(hex(encode_bits(fix)),
-              "40222018240a0600401e18240a06400012cbe32320efc1b418d06edc81c2c22fcf0000c03f000010c00000003e7f2046003c003c0041"
-              "1f211f211f21003d");
+    EXPECT_EQ(
+        hex(encode_bits(fix)),
+        "40222018240a0600401e18240a06400012cbe32320efc1b418d06edc81c2c22fcf0000c03f000010c00000003e7f2046003c003c0041"
+        "1f211f211f21003d");
 
     DronecanGetSetResponse parameter;
     parameter.value.tag = DronecanValue::integer_value;

@@ -122,7 +122,8 @@ TEST(CanAddress, IsReadOrRefused) {
     EXPECT_EQ(parse_can_address("slcan:/dev/ttyACM0")->serial.baud, 115'200U);
     EXPECT_EQ(parse_can_address("socketcan:vcan0")->name, "vcan0");
     EXPECT_EQ(parse_can_address("mcast:7")->bus, 7);
-    EXPECT_EQ(parse_can_address("mcast:256").error().message, "bus '256' is not understood; expected mcast:BUS, 0 to 255");
+    EXPECT_EQ(parse_can_address("mcast:256").error().message,
+              "bus '256' is not understood; expected mcast:BUS, 0 to 255");
     EXPECT_EQ(parse_can_address("can0").error().message,
               "'can0' is no CAN bus; expected slcan:DEVICE[@BAUD], slcan:pty[:LINK], socketcan:INTERFACE or mcast:BUS");
     EXPECT_THAT(parse_can_address("slcan:pty:").error().message, HasSubstr("a path is missing"));
