@@ -72,8 +72,7 @@ void warn_of_missing_usb(const std::vector<WireRequest>& wires, const firmware::
     }
 }
 
-// Of a slot that has no record yet, as of satellites that rise later in the file of a single station, the channel of
-// the first one in the day ahead.
+// Of a slot that has no record yet, as in the file of a single station, the channel of the first one in the day ahead.
 std::optional<int> glonass_channel(const NavigationSource& navigation, SatelliteId slot, GpsTime start) {
     constexpr std::chrono::minutes spacing{15};  // half the validity of a record
     for (GpsTime time = start; time <= start + std::chrono::days(1); time += spacing) {
