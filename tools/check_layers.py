@@ -46,7 +46,7 @@ FENCES = [
     ("the operating system",
      ("sys/", "asm/", "linux/", "net/", "netinet/", "arpa/", "fcntl.h", "unistd.h", "termios.h", "poll.h", "pty.h",
       "pthread.h", "signal.h", "netdb.h", "sched.h", "dirent.h", "csignal", "spawn.h", "dlfcn.h", "grp.h", "pwd.h"),
-     {"actuator", "core", "campaign", "devices", "hid", "transport", "emulator", "host", "src/run/api/data_place.cpp",
+     {"actuator", "can", "core", "campaign", "devices", "hid", "transport", "emulator", "host", "src/run/api/data_place.cpp",
       "src/run/feed/mavlink_endpoint.cpp", "src/run/feed/detail/feed_link.hpp", "src/run/feed/feed_link.cpp", "src/run/feed/stream_link.cpp",
       "src/run/feed/truth_feed.cpp"}),
 ]

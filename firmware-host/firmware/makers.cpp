@@ -3,6 +3,7 @@
 #include <array>
 
 #include "firmware/airoha/airoha.hpp"
+#include "firmware/dronecan/dronecan.hpp"
 #include "firmware/mediatek/mediatek.hpp"
 #include "firmware/output_only/output_only.hpp"
 #include "firmware/septentrio/septentrio.hpp"
@@ -23,6 +24,7 @@ constexpr auto all_makers = std::to_array<MakerRow>({
     {"mavlink", make_mavlink, mavlink_abilities},
     {"sbf", make_septentrio, septentrio_abilities},
     {"unicore", make_unicore, unicore_abilities},
+    {"dronecan", make_dronecan, dronecan_abilities},
 });
 
 }  // namespace

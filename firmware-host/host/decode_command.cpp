@@ -8,18 +8,21 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/core/archive.hpp"
+#include "base/core/can_frame.hpp"
 #include "base/core/files.hpp"
 #include "commands.hpp"
 #include "file_streams.hpp"
 #include "firmware/ublox/config/config_keys.hpp"
 #include "messages.hpp"
 #include "receiver/protocol/decoded_message.hpp"
+#include "receiver/protocol/dronecan_listing.hpp"
 #include "run_options.hpp"
 #include "run_session.hpp"
 
@@ -62,13 +65,13 @@ void name_config_keys(DecodedMessage& message) {
     }
 }
 
-constexpr std::array<StreamKind, 7> all_kinds{StreamKind::ubx,    StreamKind::nmea,    StreamKind::rtcm3,
-                                              StreamKind::msp,    StreamKind::mavlink, StreamKind::sbf,
-                                              StreamKind::unicore};
+constexpr std::array<StreamKind, 8> all_kinds{StreamKind::ubx,     StreamKind::nmea,    StreamKind::rtcm3,
+                                              StreamKind::msp,     StreamKind::mavlink, StreamKind::sbf,
+                                              StreamKind::unicore, StreamKind::can};
 // What switches each of these on.
-constexpr std::array<bool StreamProtocols::*, 7> protocol_flags{
-    &StreamProtocols::ubx,     &StreamProtocols::nmea, &StreamProtocols::rtcm3,  &StreamProtocols::msp,
-    &StreamProtocols::mavlink, &StreamProtocols::sbf,  &StreamProtocols::unicore};
+constexpr std::array<bool StreamProtocols::*, 8> protocol_flags{
+    &StreamProtocols::ubx,     &StreamProtocols::nmea, &StreamProtocols::rtcm3,   &StreamProtocols::msp,
+    &StreamProtocols::mavlink, &StreamProtocols::sbf,  &StreamProtocols::unicore, &StreamProtocols::can};
 
 // A tty that is silent for so long has sent all of its frame (RECEIVER.md 1.3).
 constexpr std::chrono::seconds frame_silence{2};
@@ -99,6 +102,27 @@ Wanted wanted_of(const std::vector<std::string>& words) {
     return wanted;
 }
 
+// A log of candump as the lines of SLCAN that it means. State: the unfinished line.
+class CandumpLog {
+public:
+    Bytes slcan_of(ByteSpan bytes) {
+        std::string lines;
+        for (const std::uint8_t byte : bytes) {
+            if (byte != '\n') {
+                if (line_.size() < longest) line_.push_back(static_cast<char>(byte));
+                continue;
+            }
+            if (const auto frame = parse_candump_line(line_)) lines += slcan_line(*frame);
+            line_.clear();
+        }
+        return to_bytes(lines);
+    }
+
+private:
+    static constexpr std::size_t longest = 256;
+    std::string line_;
+};
+
 // One stream from its first byte to its counts.
 class Decoder {
 public:
@@ -107,7 +131,10 @@ public:
 
     // False when standard output takes no more.
     bool take(ByteSpan bytes, bool flush) {
-        for (const StreamPiece& piece : splitter_.feed(bytes))
+        if (!candump_ && splitter_.counts().bytes == 0 && wanted_.protocols.can && !bytes.empty() && bytes[0] == '(')
+            candump_.emplace();
+        const Bytes frames = candump_ ? candump_->slcan_of(bytes) : Bytes();
+        for (const StreamPiece& piece : splitter_.feed(candump_ ? ByteSpan(frames) : bytes))
             print(piece, flush);
         return std::ferror(stdout) == 0;
     }
@@ -149,10 +176,21 @@ private:
         offset_ += piece.bytes.size();
         if (piece.kind == StreamKind::noise || std::ferror(stdout) != 0) return;
         DecodedMessage message = decode_piece(piece);
+        if (piece.kind == StreamKind::can && !join_frames(piece, message)) return;
         name_config_keys(message);
         const std::string line = (json_ ? json_line(message, offset) : text_line(message)) + '\n';
         std::fwrite(line.data(), 1, line.size(), stdout);
         if (flush) std::fflush(stdout);
+    }
+    // What a transfer of several frames says is shown with its last one. False for those before it.
+    bool join_frames(const StreamPiece& piece, DecodedMessage& message) {
+        const std::string line = to_string(piece.bytes);
+        const auto frame = parse_slcan_line(std::string_view(line).substr(0, line.find('\r')));
+        const auto head = frame ? dronecan_head(*frame) : std::nullopt;
+        if (!head || find_dronecan_type(head->kind, head->type_id) == nullptr) return true;
+        const auto transfer = transfers_.take(*frame, {});
+        if (transfer) list_dronecan(*transfer, message);
+        return transfer.has_value();
     }
     // A dollar or a byte of 0xFE in another stream is no failed frame of a protocol that never speaks there.
     [[nodiscard]] std::vector<StreamKind> counted() const {
@@ -168,6 +206,8 @@ private:
     bool json_;
     Wanted wanted_;
     StreamSplitter splitter_;
+    TransferReceiver transfers_;
+    std::optional<CandumpLog> candump_;  // nothing: another stream
     std::uint64_t offset_ = 0;
 };
 
@@ -199,7 +239,7 @@ Result<void> decode_stream(InputStream& input, const std::string& path, Decoder&
 std::string nothing_in(const DecodeOptions& options, const std::string& name, std::uint64_t bytes) {
     const bool any = is_automatic(options.protocols);
     return fmt::format("{}: no message of {} in its {} bytes{}", name,
-                       any ? "UBX, NMEA, RTCM 3, MSP, MAVLink, SBF or Unicore"
+                       any ? "UBX, NMEA, RTCM 3, MSP, MAVLink, SBF, Unicore or DroneCAN"
                            : fmt::format("{}", fmt::join(options.protocols, " or ")),
                        bytes, options.input == "-" ? "; what is packed is unpacked from files alone" : "");
 }
@@ -234,18 +274,20 @@ int decode(const DecodeOptions& options) {
 }  // namespace
 
 Action add_decode_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "decode", "The messages of a UBX, NMEA, RTCM 3, MSP, MAVLink, SBF or Unicore stream as text or JSON lines");
+    CLI::App* command =
+        app.add_subcommand("decode",
+                           "The messages of a UBX, NMEA, RTCM 3, MSP, MAVLink, SBF, Unicore or DroneCAN (SLCAN, "
+                           "candump) stream as text or JSON lines");
     auto options = std::make_shared<DecodeOptions>();
     command->add_option("FILE", options->input, "File (also .gz, .zip, …), tty or pipe; default: -, standard input");
     command->add_option("--format", options->format, "text or json")->check(CLI::IsMember({"text", "json"}));
     command
-        ->add_option(
-            "--protocol", options->protocols,
-            "What to look for, separated by commas: ubx nmea rtcm3 msp mavlink sbf unicore; default: auto, all of them")
+        ->add_option("--protocol", options->protocols,
+                     "What to look for, separated by commas: ubx nmea rtcm3 msp mavlink sbf unicore can; default: "
+                     "auto, all of them")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"auto", "ubx", "nmea", "rtcm3", "msp", "mavlink", "sbf", "unicore"}));
+        ->check(CLI::IsMember({"auto", "ubx", "nmea", "rtcm3", "msp", "mavlink", "sbf", "unicore", "can"}));
     add_verbosity_options(*command, options->verbosity);
     return [options] { return decode(*options); };
 }

@@ -8,8 +8,10 @@
 #include <map>
 #include <set>
 
+#include "base/core/can_frame.hpp"
 #include "firmware/core/port_id.hpp"
 #include "firmware/ublox/config/config_keys.hpp"
+#include "receiver/protocol/dronecan_transfer.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
 #include "receiver/protocol/ubx_messages.hpp"
@@ -44,6 +46,7 @@ BoardProfile eager_board(const std::string& name) {
         for (std::size_t i = 0; i < std::size(firmware::nmea_sentence_names); ++i)
             board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});
     }
+    board.can.node_id = 42;
     if (board.maker != MakerKind::ublox) return board;
     for (const UbxMessageId message : board.messages)
         board.config[*firmware::rate_key(message, PortId::uart1)] = 1;
@@ -93,6 +96,25 @@ Bytes spoken(const std::string& body) {
     return to_bytes(fmt::format("${}*{:02X}\r\n", body, sum));
 }
 
+// A request to the node 42, of whose transfers no two in a row have the same id.
+template <class Request>
+Bytes requested(const Request& request, int second) {
+    const DronecanTransfer transfer{
+        Request::type.kind, Request::type.id, 20, 10, 42, static_cast<std::uint8_t>(second % 32), encode_bits(request)};
+    std::string lines;
+    for (const CanFrame& frame : dronecan_frames(transfer, Request::type.signature))
+        lines += slcan_line(frame);
+    return to_bytes(lines);
+}
+
+DronecanGetSetRequest gps_type(std::optional<int> value) {
+    DronecanGetSetRequest request;
+    request.name = {'G', 'P', 'S', '_', 'T', 'Y', 'P', 'E'};
+    if (value) request.value.tag = DronecanValue::integer_value;
+    request.value.integer = value.value_or(0);
+    return request;
+}
+
 // What a client of the board sets at first, so that it shows.
 Bytes first_setting(MakerKind personality) {
     if (personality == MakerKind::mtk) return spoken("PMTK314,1,1,1,1,1,0,1,1,0,0,0,0,0,0,0,0,0,1,0");
@@ -100,11 +122,12 @@ Bytes first_setting(MakerKind personality) {
     if (personality == MakerKind::sbf) return to_bytes("sso,Stream2,COM1,DOP,sec1\n");
     if (personality == MakerKind::unicore)
         return to_bytes("AGRICA 1\r\nUNIHEADINGA 1\r\nRECTIMEA 1\r\nPVTSLNA 1\r\nOBSVMA 1\r\n");
+    if (personality == MakerKind::dronecan) return requested(gps_type(17), 31);
     return spoken("PUBX,40,GSV,0,0,0,0");
 }
 
 // What it says in each second: polls and settings, and corrections.
-std::vector<Bytes> said_each_second(MakerKind personality) {
+std::vector<Bytes> said_each_second(MakerKind personality, int second) {
     CfgValset items;
     items.layers = 1;
     items.pairs = {{firmware::key::rate_meas, 1000}};
@@ -121,6 +144,8 @@ std::vector<Bytes> said_each_second(MakerKind personality) {
             return {to_bytes("grc\n")};
         case MakerKind::unicore:
             return {to_bytes("VERSIONA\r\n"), encode(Rtcm3Station{})};
+        case MakerKind::dronecan:
+            return {requested(gps_type({}), second)};
         default:
             return {version, spoken("PMTK605"), to_bytes("grc\n")};
     }
@@ -175,7 +200,7 @@ private:
     void speak(int second, GpsTime now) {
         const MakerKind personality = receiver_.board().maker;
         if (second == 0) receiver_.input(PortId::uart1, first_setting(personality), now);
-        for (const Bytes& said : said_each_second(personality))
+        for (const Bytes& said : said_each_second(personality, second))
             receiver_.input(PortId::uart1, said, now);
     }
     void epoch(const Fault* fault, const FaultMoment& moment) {

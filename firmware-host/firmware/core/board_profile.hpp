@@ -48,7 +48,8 @@ enum class MakerKind {
     msp_v1,   ///< its older MSP_SET_RAW_GPS
     mavlink,  ///< MAVLink GPS_INPUT
     sbf,      ///< Septentrio's blocks
-    unicore   ///< Unicore's text commands, its logs in ASCII and binary
+    unicore,  ///< Unicore's text commands, its logs in ASCII and binary
+    dronecan  ///< a node of DroneCAN
 };
 
 /// At which speed the answer leaves to a message that changes the speed of the port it came by.
@@ -138,6 +139,13 @@ struct Quirks {
     std::optional<int> leap_seconds;  ///< that it believes until it has decoded them; nothing: the right ones
 };
 
+/// What a node of a CAN bus has (DroneCAN).
+struct CanNode {
+    int node_id = 0;  ///< 1 … 125, counted up by the further receivers of a run; 0: it asks for one
+    std::string name = "org.skyloop.gnss";
+    bool two_antennas = false;  ///< the vector of a pair is a heading of its own: Heading in place of RelPosHeading
+};
+
 /// The blocks of CFG-GNSS as the board answers them.
 struct GnssBlock {
     std::uint8_t gnss_id = 0, reserved_channels = 0, max_channels = 0;
@@ -191,6 +199,7 @@ struct BoardProfile {
     Quirks quirks;
     CorrectionAbility corrections;
     PowerAbility power;
+    CanNode can;
 
     std::uint32_t baud = 9600;  ///< of UART1 at the factory
     std::uint32_t transmit_buffer_bytes = 4096;

@@ -61,8 +61,9 @@ void Receiver::Core::start(GpsTime now) {
     tracker_.start(now, Forgotten::of(options_.settings.start),
                    !options_.power_up && options_.settings.start == StartKind::hot);
     parts_.report(tracker_.state());
-    if (!options_.power_up) return;
+    if (!options_.power_up) return parts_.maker->begin(now);
     const GpsTime awake = advanced(now, parts_.board.timing.boot);
+    parts_.maker->begin(awake);
     deaf_until_ = awake;
     silent_until_ = advanced(awake, parts_.board.timing.first_epoch);
     parts_.outbox.plan(awake, [this](GpsTime t) { send_banner(t, true); });
@@ -84,12 +85,29 @@ void Receiver::Core::input(PortId port, ByteSpan bytes, GpsTime now) {
 std::vector<Receiver::Sent> Receiver::Core::output(GpsTime now) {
     for (PortUnit& unit : parts_.units)
         input_.give_up_unfinished(unit, now);
-    std::vector<Sent> sent = parts_.outbox.run(now);
+    std::vector<Sent> sent;
+    act_until(now, sent);
+    std::ranges::move(parts_.outbox.run(now), std::back_inserter(sent));
     while (sleep_.is_over(now)) {
         wake_by_clock(now);
         std::ranges::move(parts_.outbox.run(now), std::back_inserter(sent));
     }
     return sent;
+}
+
+// What it sends by itself, each at its time among what is planned.
+void Receiver::Core::act_until(GpsTime now, std::vector<Sent>& sent) {
+    for (auto at = parts_.maker->acts_at(); at && *at <= now; at = parts_.maker->acts_at()) {
+        std::ranges::move(parts_.outbox.run(*at), std::back_inserter(sent));
+        if (parts_.maker->acts_at() != at) continue;  // it has started anew
+        for (const PortMessage& message : parts_.maker->act(*at, parts_.faults))
+            if (!sleep_.is_off()) parts_.send(message.port, {message.bytes}, *at);
+    }
+}
+
+std::optional<GpsTime> Receiver::Core::next_change() const {
+    const std::optional<GpsTime> sleep = sleep_.next_change(), act = parts_.maker->acts_at();
+    return sleep && act ? std::min(*sleep, *act) : sleep ? sleep : act;
 }
 
 ReceiverCounters Receiver::Core::counters() const {

@@ -35,7 +35,7 @@ public:
     [[nodiscard]] const ReceiverSettings& settings() const { return settings_; }
     [[nodiscard]] ReceiverCounters counters() const;
     [[nodiscard]] std::optional<GpsTime> report_time() const { return report_time_; }
-    [[nodiscard]] std::optional<GpsTime> next_change() const { return sleep_.next_change(); }
+    [[nodiscard]] std::optional<GpsTime> next_change() const;
 
 private:
     // Input.
@@ -46,6 +46,7 @@ private:
     void reply(PortUnit& unit, CommandOutcome& outcome, GpsTime now);
     [[nodiscard]] bool stays_silent_to(UbxMessageId message) const;
     [[nodiscard]] GpsTime answer_time(GpsTime now, Seconds work);
+    void act_until(GpsTime now, std::vector<Sent>& sent);
 
     // Settings and restarts.
     void adopt_settings();

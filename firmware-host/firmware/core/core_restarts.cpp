@@ -86,6 +86,7 @@ void Receiver::Core::boot(const Forgotten& forgotten, GpsTime now, const Boot& h
     speeds_.release();
     reporter_.restart(now);
     const GpsTime awake = advanced(now, how.takes);
+    parts_.maker->begin(awake);
     deaf_until_ = awake;
     tracker_.boot(now, how.cause);
     restart_navigation(forgotten, now, how.takes + parts_.board.timing.first_epoch);

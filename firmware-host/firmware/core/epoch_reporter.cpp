@@ -40,7 +40,7 @@ GpsTime EpochReporter::plan(const std::shared_ptr<const NavigationState>& state,
 }
 
 void EpochReporter::send(const NavigationState& state, GpsTime now) {
-    parts_.maker->follow(state);
+    parts_.maker->follow(state, now);
     for (PortUnit& unit : parts_.units) {
         parts_.outbox.give_up_turns(unit, now);
         unit.status.transmit_full = std::exchange(unit.overflowed, false);

@@ -44,6 +44,8 @@ struct FirmwareFaults {
     Seconds solution_delay{0};                             ///< more from the epoch to its first byte
     /// Its interference monitor (MON-HW, MON-RF) stays at "unknown", as firmware does that has it off.
     bool jamming_hidden = false;
+    bool no_node_status = false;  ///< a CAN node sends no NodeStatus, whatever else it sends
+    bool shares_node_id = false;  ///< another CAN node of its bus has the same node id
 };
 
 /// It starts anew: banner, stored configuration and speed, navigation as after a start of that kind.

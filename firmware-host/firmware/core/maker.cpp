@@ -19,7 +19,9 @@ std::optional<std::vector<PortMessage>> Maker::correction_reports(const Correcti
 }
 
 void Maker::restrict(NavigationState&) const {}
-void Maker::follow(const NavigationState&) {}
+void Maker::follow(const NavigationState&, GpsTime) {}
+void Maker::begin(GpsTime) {}
+std::vector<PortMessage> Maker::act(GpsTime, const FirmwareFaults&) { return {}; }
 std::string_view Maker::navigation_text(bool) const { return {}; }
 std::vector<Bytes> Maker::greeting(PortId) const { return {}; }
 void Maker::navigation_restarts(const Forgotten&) {}

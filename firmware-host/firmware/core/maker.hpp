@@ -105,10 +105,16 @@ public:
     [[nodiscard]] virtual CorrectionState allowed(CorrectionState at_hand) const { return at_hand; }
     /// Takes from an epoch what the settings do not want reported.
     virtual void restrict(NavigationState& state) const;
-    /// Takes an epoch in before its messages are made.
-    virtual void follow(const NavigationState& state);
+    /// Takes an epoch in before its messages are made. @param now when they begin to leave
+    virtual void follow(const NavigationState& state, GpsTime now);
     /// What is due on a port at the epoch of `made`.
     virtual DueMessages due(PortId port, EpochMessages& made, const FirmwareFaults& faults) = 0;
+    /// The receiver listens from then on: it has started, or has been on for long.
+    virtual void begin(GpsTime awake);
+    /// When it sends something by itself, without an epoch and without being asked; nothing: never.
+    [[nodiscard]] virtual std::optional<GpsTime> acts_at() const { return std::nullopt; }
+    /// What that is; acts_at() is later than `now` after it.
+    virtual std::vector<PortMessage> act(GpsTime now, const FirmwareFaults& faults);
     /// What its receivers say when navigation starts or stops; empty: nothing.
     [[nodiscard]] virtual std::string_view navigation_text(bool on) const;
 

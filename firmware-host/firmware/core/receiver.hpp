@@ -33,6 +33,7 @@ struct ReceiverOptions {
     ReceiverSettings settings{};  ///< what else its user has set from the factory on
     std::uint64_t seed = 1;       ///< of the jitter of its latency, and of its monitors
     bool power_up = false;        ///< it is switched on at the start; otherwise it has been on for long
+    std::size_t number = 0;       ///< among the receivers of the run: what each has of its own, whatever the seed
 };
 
 /// First settings that a receiver would refuse itself.
@@ -88,7 +89,7 @@ public:
     /// is queued or planned.
     [[nodiscard]] std::optional<GpsTime> next_output(PortId port) const;
 
-    /// When it goes on or off by itself, so that it is looked at then; nothing when it does not.
+    /// When it goes on or off, or sends something, by itself, so that it is looked at then; nothing when it does not.
     [[nodiscard]] std::optional<GpsTime> next_change() const;
 
     /// Whether the board has the port.

@@ -192,6 +192,13 @@ inline std::uint32_t whole_milliseconds(const WeekAndTow& stamp) {
     return static_cast<std::uint32_t>(std::chrono::duration_cast<std::chrono::milliseconds>(stamp.tow).count());
 }
 
+/// UTC as POSIX has it, which leaves leap seconds out: µs since 1970, of the nearest millisecond.
+inline std::uint64_t posix_microseconds(GpsTime time, int leap_seconds) {
+    const std::int64_t gps_us =
+        std::chrono::duration_cast<std::chrono::microseconds>(to_gps_time(gps_stamp(time)).time_since_epoch()).count();
+    return static_cast<std::uint64_t>(gps_us + (gps_epoch_posix_s - leap_seconds) * 1'000'000);
+}
+
 /// What the receiver counts UTC by at the epoch, and that time, rounded to milliseconds.
 inline LeapSeconds reported_leap_seconds(const NavigationState& state) {
     const Fix& fix = state.epoch.fix;

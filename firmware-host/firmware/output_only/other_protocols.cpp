@@ -1,6 +1,5 @@
 #include "firmware/output_only/other_protocols.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -36,14 +35,6 @@ void put_msp_clock(const NavigationState& state, MspSensorGps& to) {
     to.hour = static_cast<std::uint8_t>(utc.hour);
     to.minute = static_cast<std::uint8_t>(utc.minute);
     to.second = static_cast<std::uint8_t>(utc.second);
-}
-
-// POSIX leaves leap seconds out.
-std::uint64_t posix_microseconds(const Fix& fix) {
-    const std::int64_t gps_us =
-        std::chrono::duration_cast<std::chrono::microseconds>(to_gps_time(gps_stamp(fix.time)).time_since_epoch())
-            .count();
-    return static_cast<std::uint64_t>(gps_us + (gps_epoch_posix_s - fix.leap_seconds) * 1'000'000);
 }
 
 void put_mavlink_place(const Fix& fix, MavlinkGpsInput& to) {
@@ -112,7 +103,7 @@ MavlinkGpsInput mavlink_gps_input(const NavigationState& state) {
     const WeekAndTow stamp = gps_stamp(state);
     if (state.time.date) message.time_week.set(static_cast<double>(stamp.week));
     if (state.time.time) message.time_week_ms = whole_milliseconds(stamp);
-    if (state.time.time && state.time.date) message.time_usec = posix_microseconds(fix);
+    if (state.time.time && state.time.date) message.time_usec = posix_microseconds(fix.time, fix.leap_seconds);
     message.ignore_flags = every_ignore_flag;
     if (has_place(state)) put_mavlink_place(fix, message);
     if (!has_solution(state)) return message;

@@ -30,9 +30,10 @@ bool is_due(const BoardSentence& sentence, std::uint64_t every, const EpochMessa
     return every != 0 && made.state().epoch_index % every == 0 && !faults.withheld.contains(sentence.id);
 }
 
-SentenceMaker::SentenceMaker(const BoardProfile& board, const ReceiverOptions& options, bool reports_dead_reckoning)
+SentenceMaker::SentenceMaker(const BoardProfile& board, const ReceiverOptions& options, bool reports_dead_reckoning,
+                             std::span<const OwnSetting> own)
     : Maker(board),
-      settings_(board, options),
+      settings_(board, options, own),
       sentences_(board_sentences(board)),
       reports_dead_reckoning_(reports_dead_reckoning) {}
 

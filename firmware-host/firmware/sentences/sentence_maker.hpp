@@ -26,7 +26,8 @@ bool is_due(const BoardSentence& sentence, std::uint64_t every, const EpochMessa
 /// Sends sentences by their rates, and understands nothing. State: settings.
 class SentenceMaker : public Maker {
 public:
-    SentenceMaker(const BoardProfile& board, const ReceiverOptions& options, bool reports_dead_reckoning = true);
+    SentenceMaker(const BoardProfile& board, const ReceiverOptions& options, bool reports_dead_reckoning = true,
+                  std::span<const OwnSetting> own = {});
 
     [[nodiscard]] const ReceiverConfig& config() const override;
     [[nodiscard]] std::uint64_t revision() const override { return settings_.revision(); }

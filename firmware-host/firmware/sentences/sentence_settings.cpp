@@ -15,8 +15,12 @@ namespace {
 
 using Settings = SentenceSettings;
 
-ConfigValues factory_values(const BoardProfile& board, const ReceiverOptions& options, const ReceiverConfig& factory) {
+ConfigValues factory_values(const BoardProfile& board, const ReceiverOptions& options,
+                            std::span<const OwnSetting> own) {
+    const ReceiverConfig factory = factory_settings(board, options);
     ConfigValues values;
+    for (const OwnSetting& setting : own)
+        values[setting.key] = setting.factory;
     values[Settings::fix_interval_ms] = measurement_period_ms(board, options.rate_hz);
     values[Settings::dynamic_model] = static_cast<std::uint64_t>(factory.limits.dynamic_model);
     values[Settings::held_below_cmps] =
@@ -35,11 +39,13 @@ ConfigValues factory_values(const BoardProfile& board, const ReceiverOptions& op
     return values;
 }
 
-std::map<std::uint32_t, std::string> names_of(const BoardProfile& board) {
+std::map<std::uint32_t, std::string> names_of(const BoardProfile& board, std::span<const OwnSetting> own) {
     std::map<std::uint32_t, std::string> names{{Settings::fix_interval_ms, "fix_interval_ms"},
                                                {Settings::dynamic_model, "dynamic_model"},
                                                {Settings::held_below_cmps, "held_below_cmps"},
                                                {Settings::sbas_corrections, "sbas_corrections"}};
+    for (const OwnSetting& setting : own)
+        names[setting.key] = setting.name;
     for (std::size_t i = 0; i < constellation_names.size(); ++i)
         names[Settings::system(static_cast<Constellation>(i))] = constellation_names[i];
     for (const PortId port : board.ports) {
@@ -54,11 +60,12 @@ std::map<std::uint32_t, std::string> names_of(const BoardProfile& board) {
 
 }  // namespace
 
-SentenceSettings::SentenceSettings(const BoardProfile& board, const ReceiverOptions& options)
-    : LayeredValues(factory_values(board, options, factory_settings(board, options))),
+SentenceSettings::SentenceSettings(const BoardProfile& board, const ReceiverOptions& options,
+                                   std::span<const OwnSetting> own)
+    : LayeredValues(factory_values(board, options, own)),
       board_(board),
       factory_(factory_settings(board, options)),
-      names_(names_of(board)) {}
+      names_(names_of(board, own)) {}
 
 std::optional<std::uint32_t> SentenceSettings::rate(std::string_view sentence, PortId port) {
     const auto* const found = std::ranges::find(nmea_sentence_names, sentence);

@@ -1,7 +1,9 @@
 /// What receivers of sentences can be set to, whoever made them.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -10,11 +12,18 @@
 
 namespace skyloop::firmware {
 
+/// A setting that receivers of one maker have besides.
+struct OwnSetting {
+    std::uint32_t key = 0;  ///< 5000 and up
+    std::string_view name;
+    std::uint64_t factory = 0;
+};
+
 /// Settings by our own names, "fix_interval_ms" or "GGA_uart1".
 class SentenceSettings : public LayeredValues {
 public:
     /// @param board it must outlive this
-    SentenceSettings(const BoardProfile& board, const ReceiverOptions& options);
+    SentenceSettings(const BoardProfile& board, const ReceiverOptions& options, std::span<const OwnSetting> own = {});
 
     static constexpr std::uint32_t fix_interval_ms = 1, dynamic_model = 2, held_below_cmps = 3, sbas_corrections = 4;
     static constexpr std::uint32_t baud(PortId port) { return 10 + static_cast<std::uint32_t>(port); }

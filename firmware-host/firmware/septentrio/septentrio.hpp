@@ -17,7 +17,7 @@ public:
     CommandOutcome receive(const StreamPiece& piece, const Situation& asked) override;
     [[nodiscard]] CorrectionState allowed(CorrectionState at_hand) const override;
     void restrict(NavigationState& state) const override;
-    void follow(const NavigationState& state) override { console_.follow(state); }
+    void follow(const NavigationState& state, GpsTime) override { console_.follow(state); }
     DueMessages due(PortId port, EpochMessages& made, const FirmwareFaults& faults) override;
     void restart(bool keeps_ram) override;
     void lose_battery() override {}

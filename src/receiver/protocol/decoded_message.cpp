@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/core/words.hpp"
+#include "receiver/protocol/dronecan_listing.hpp"
 #include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/known_sbf.hpp"
 #include "receiver/protocol/mavlink_vehicle.hpp"
@@ -179,8 +180,8 @@ void list_unicore(ByteSpan bytes, DecodedMessage& message) {
 }  // namespace
 
 std::string_view stream_kind_name(StreamKind kind) {
-    constexpr std::array<std::string_view, stream_kind_count> names{"ubx",     "nmea", "rtcm3",   "noise",  "msp",
-                                                                    "mavlink", "sbf",  "command", "unicore"};
+    constexpr std::array<std::string_view, stream_kind_count> names{"ubx",     "nmea", "rtcm3",   "noise",   "msp",
+                                                                    "mavlink", "sbf",  "command", "unicore", "can"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -206,6 +207,10 @@ DecodedMessage decode_piece(const StreamPiece& piece) {
         if (const auto block = parse_sbf(bytes)) list_sbf(*block, message);
     } else if (piece.kind == StreamKind::unicore) {
         list_unicore(bytes, message);
+    } else if (piece.kind == StreamKind::can) {
+        const std::string line = to_string(bytes);
+        if (const auto frame = parse_slcan_line(std::string_view(line).substr(0, line.find('\r'))))
+            list_can(*frame, message);
     } else if (piece.kind == StreamKind::command) {
         message.fields.push_back({"line", {to_string(bytes)}});
     } else {

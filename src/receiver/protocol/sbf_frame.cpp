@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "base/core/crc16.hpp"
+
 namespace skyloop::inline receiver {
 namespace {
 
@@ -25,15 +27,7 @@ constexpr std::array<SvidRange, 11> svid_ranges{{{Constellation::gps, 1, 37, 1},
 
 }  // namespace
 
-std::uint16_t sbf_crc(ByteSpan bytes) {
-    unsigned crc = 0;
-    for (const std::uint8_t byte : bytes) {
-        crc ^= static_cast<unsigned>(byte) << 8;
-        for (int bit = 0; bit < 8; ++bit)
-            crc = (crc & 0x8000u) != 0 ? (crc << 1 ^ 0x1021u) & 0xFFFFu : crc << 1;
-    }
-    return static_cast<std::uint16_t>(crc);
-}
+std::uint16_t sbf_crc(ByteSpan bytes) { return crc16_ccitt(bytes, 0); }
 
 Bytes encode_sbf_block(std::uint16_t number, std::uint8_t revision, ByteSpan body) {
     const std::size_t size = (sbf_head_size + body.size() + 3) / 4 * 4;

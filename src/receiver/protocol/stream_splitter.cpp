@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/core/can_frame.hpp"
 #include "receiver/protocol/mavlink.hpp"
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
@@ -129,6 +130,20 @@ Candidate mavlink_at(ByteSpan bytes) {
     return framed_at(bytes, StreamKind::mavlink, mavlink_frame_size(bytes), parse_mavlink);
 }
 
+// Its length stands in its head, so that what is no frame is seen at the first wrong character.
+Candidate slcan_at(ByteSpan bytes) {
+    const std::size_t seen = std::min(bytes.size(), SlcanLines::longest + 1);
+    for (std::size_t i = 1; i < seen; ++i) {
+        const std::uint8_t c = bytes[i];
+        if (c == '\r') {
+            const std::string_view line(reinterpret_cast<const char*>(bytes.data()), i);
+            return parse_slcan_line(line) ? Candidate{Candidate::Verdict::whole, StreamKind::can, i + 1} : no_piece;
+        }
+        if ((c < '0' || c > '9') && (c < 'A' || c > 'F') && (c < 'a' || c > 'f')) return no_piece;
+    }
+    return bytes.size() <= SlcanLines::longest ? unfinished_piece : no_piece;
+}
+
 Candidate dollar_at(ByteSpan bytes, const StreamProtocols& protocols) {
     if (bytes.size() < 2) return unfinished_piece;
     if (protocols.sbf && bytes[1] == sbf_sync_2) return sbf_at(bytes);
@@ -163,6 +178,9 @@ Candidate piece_at(ByteSpan bytes, const StreamProtocols& protocols) {
             return dollar_at(bytes, protocols);
         case '!':
             return protocols.nmea ? sentence_at(bytes) : no_piece;
+        case 'T':
+        case 't':
+            return protocols.can ? slcan_at(bytes) : no_piece;
         default:
             return no_piece;
     }

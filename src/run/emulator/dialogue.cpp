@@ -71,6 +71,8 @@ std::string message_name(StreamKind kind, ByteSpan message) {
             return "SBF";
         case StreamKind::unicore:
             return unicore_name(message);
+        case StreamKind::can:
+            return "DroneCAN";
         case StreamKind::command:
             return command_line_name(base::to_string(message)).value_or("command");
         case StreamKind::noise:

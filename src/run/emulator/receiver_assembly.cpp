@@ -72,8 +72,7 @@ void warn_of_missing_usb(const std::vector<WireRequest>& wires, const firmware::
     }
 }
 
-// Of a slot that has no record yet, as of satellites that rise later in the file of a single station, the channel of
-// the first one in the day ahead.
+// Of a slot that has no record yet, as in the file of a single station, the channel of the first one in the day ahead.
 std::optional<int> glonass_channel(const NavigationSource& navigation, SatelliteId slot, GpsTime start) {
     constexpr std::chrono::minutes spacing{15};  // half the validity of a record
     for (GpsTime time = start; time <= start + std::chrono::days(1); time += spacing) {
@@ -169,13 +168,14 @@ Result<std::unique_ptr<PowerSwitch>> power_of(const std::string& uri, const Shar
     return power;
 }
 
-Result<Link> open_wire(const WireRequest& wire, const firmware::Receiver& receiver, const RunMode& mode,
+Result<Link> open_wire(const WireRequest& wire, const firmware::Receiver& receiver, const SharedParts& shared,
                        std::size_t index) {
     const PortSpeed speed = port_speed(receiver, wire.port);
-    if (mode.embedding != nullptr && mode.embedding->open_wire)
-        if (auto led = mode.embedding->open_wire(index, wire)) return Link(std::move(led), speed, InputPace::at_once);
+    if (const Embedding* const leads = shared.mode.embedding; leads != nullptr && leads->open_wire)
+        if (auto led = leads->open_wire(index, wire)) return Link(std::move(led), speed, InputPace::at_once);
     const auto client = client_of_uri(wire.uri);
-    auto transport = client ? open_client(*client) : open_transport(wire.uri, usb_face(receiver.board(), wire.port));
+    const UsbFace face = usb_face(receiver.board(), wire.port);
+    auto transport = client ? open_client(*client) : open_transport(wire.uri, face, shared.can_buses.get());
     if (!transport) return fail(transport.error());
     return Link(std::move(*transport), speed, InputPace::line);
 }
@@ -306,7 +306,7 @@ Result<PlannedStation> planned(const SharedParts& shared, std::size_t index, std
     if (!named) return fail(named.error());
     auto& [board, wires, state] = *named;
     const firmware::ReceiverOptions options{entry.rate_hz.value_or(0), receiver_settings(scenario, board, index),
-                                            receiver_seed(scenario.run, index), entry.power_up};
+                                            receiver_seed(scenario.run, index), entry.power_up, index};
     warn_of_missing_usb(wires, board, entry, warnings);
     warn_of_deaf_port(wires, board, entry, warnings);
     warn_of_untracked(scenario, board, options.settings, warnings);
@@ -366,7 +366,7 @@ Result<void> plug_in(PlannedStation& station, const SharedParts& shared, std::si
             if (!plugged) return fail(of_receiver(plugged.error(), shared.scenario, index));
             continue;
         }
-        auto link = open_wire(wire, station.parts.receiver, shared.mode, index);
+        auto link = open_wire(wire, station.parts.receiver, shared, index);
         if (!link) return fail(of_receiver(link.error(), shared.scenario, index));
         if (shared.mode.virtual_time) link->transport().allow_waiting();
         // The recording stands for a scripted client, which still says what it believes.

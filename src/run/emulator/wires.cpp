@@ -74,6 +74,7 @@ WireEnd end_of_wire(const std::string& owner, const std::string& uri) {
         case WireKind::usbip:
             end.place = place_of_server(parsed->address);
             break;
+        case WireKind::can:          // several nodes share a bus
         case WireKind::tcp_connect:  // a server may take several
         case WireKind::usb:          // of several alike, each takes its own
         case WireKind::hid:
@@ -146,6 +147,10 @@ Result<WireRequest> parse_wire(std::string_view text, const BoardProfile& board)
     }
     const auto uri = parse_port_uri(wire.uri);
     if (!uri) return fail(uri.error());
+    if (uri->kind == WireKind::can && !board.name.empty() && board.maker != firmware::MakerKind::dronecan)
+        return fail(ErrorCode::usage, fmt::format("port '{}': {} is not a node of a CAN bus; expected a board such as "
+                                                  "dronecan-generic",
+                                                  text, board.name));
     if (uri->baud && wire.port != PortId::uart1)
         return fail(ErrorCode::usage, fmt::format("port '{}': {} takes no speed; expected @BAUD at uart1 alone", text,
                                                   firmware::port_names[static_cast<std::size_t>(wire.port)]));

@@ -10,9 +10,10 @@ namespace skyloop::inline run {
 const std::vector<FaultKind>& fault_kinds() {
     static const std::vector<FaultKind> kinds = [] {
         std::vector<FaultKind> all;
-        for (const auto& layer : {reception_fault_kinds(), spoofing_fault_kinds(), satellite_fault_kinds(),
-                                  authentication_fault_kinds(), position_fault_kinds(), time_fault_kinds(),
-                                  receiver_fault_kinds(), wire_fault_kinds(), correction_fault_kinds()})
+        for (const auto& layer :
+             {reception_fault_kinds(), spoofing_fault_kinds(), satellite_fault_kinds(), authentication_fault_kinds(),
+              position_fault_kinds(), time_fault_kinds(), receiver_fault_kinds(), can_receiver_fault_kinds(),
+              wire_fault_kinds(), can_wire_fault_kinds(), correction_fault_kinds()})
             all.insert(all.end(), layer.begin(), layer.end());
         return all;
     }();

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "base/core/can_frame.hpp"
 #include "receiver/protocol/mavlink.hpp"
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
@@ -82,6 +83,16 @@ void turn_bit_of_unicore(Bytes& message, RandomStream& random) {
     turn_bit_of_sentence(message, random);
 }
 
+// CAN's own CRC is the adapter's affair: what arrives wrong is a byte of data, which the transfer's CRC covers.
+void turn_bit_of_can(Bytes& line, RandomStream& random) {
+    const std::string text = to_string(line);
+    auto frame = parse_slcan_line(std::string_view(text).substr(0, text.find('\r')));
+    if (!frame || frame->size < 2) return;
+    const std::size_t at = drawn_index(random, frame->size - 1U);
+    frame->data[at] = static_cast<std::uint8_t>(frame->data[at] ^ (1U << drawn_index(random, 8)));
+    line = to_bytes(slcan_line(*frame));
+}
+
 }  // namespace
 
 void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
@@ -100,6 +111,8 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
             return turn_bit_of_mavlink(message, random);
         case StreamKind::unicore:
             return turn_bit_of_unicore(message, random);
+        case StreamKind::can:
+            return turn_bit_of_can(message, random);
         case StreamKind::noise:
         case StreamKind::command:
             return;
@@ -109,7 +122,7 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
 MessageDamage::MessageDamage(std::uint64_t seed, std::string_view stream)
     : splitter_(wire_protocols), corrections_(seed, std::string(stream)) {
     for (const std::string_view of : {"checksum", "place", "truncation", "merging", "duplication", "reordering",
-                                      "garbage", "garbage content", "jitter", "garbage source"})
+                                      "garbage", "garbage content", "jitter", "garbage source", "message loss"})
         random_.emplace_back(seed, std::string(stream) + "." + std::string(of));
     threshold_ = next_threshold();
 }
@@ -129,9 +142,10 @@ void MessageDamage::set(const WireDirection& direction, GpsTime now, std::vector
     integrated_to_ = now;
     direction_ = direction;
     corrections_.set(direction.corrections);
-    active_ = direction.checksum_errors > 0 || direction.truncation > 0 || direction.merging > 0 ||
-              direction.duplication > 0 || direction.reordering > 0 || !direction.garbage.empty() ||
-              direction.jitter.value() > 0 || direction.corrections != CorrectionConditions{};
+    active_ = direction.message_loss > 0 || direction.checksum_errors > 0 || direction.truncation > 0 ||
+              direction.merging > 0 || direction.duplication > 0 || direction.reordering > 0 ||
+              !direction.garbage.empty() || direction.jitter.value() > 0 ||
+              direction.corrections != CorrectionConditions{};
     if (direction.garbage.empty()) {
         integral_ = 0;
         bursts_due_.clear();
@@ -226,6 +240,11 @@ void MessageDamage::cut(Bytes& message) {
 void MessageDamage::damage(StreamPiece piece, GpsTime now, std::vector<TimedBytes>& out) {
     Bytes message = std::move(piece.bytes);
     const std::size_t size = message.size();
+    if (happens(direction_.message_loss, losses)) {
+        counts_.bytes_lost += size;
+        ++counts_.messages_changed;
+        return;
+    }
     bool changed = false;
     if (happens(direction_.checksum_errors, checksums)) {
         spoil_checksum(message, piece.kind, random_[places]);

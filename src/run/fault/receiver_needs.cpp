@@ -95,12 +95,15 @@ bool has_wired_uart1(const UsedReceiver& receiver) {
     return std::find(receiver.wired.begin(), receiver.wired.end(), firmware::PortId::uart1) != receiver.wired.end();
 }
 
+bool is_can_node(const UsedReceiver& receiver) { return receiver.board.maker == firmware::MakerKind::dronecan; }
+
 bool sends_periodically(const UsedReceiver& receiver, UbxMessageId message) {
     using enum Abilities::MessageChoice;
     const BoardProfile& board = receiver.board;
     if (firmware::makes_nothing_of(message)) return false;
     const bool listed = firmware::sends(board, message);
     const bool sentence = message.message_class == firmware::class_nmea;
+    if (is_can_node(receiver)) return false;  // a bus has messages of its own
     if (sentence && (listed || board.messages.empty()) && is_factory_sentence(board, message)) return true;
     const Abilities can = firmware::abilities(board);
     if (can.choice == command_line) return sentence && (listed || board.messages.empty());

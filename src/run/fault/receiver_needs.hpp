@@ -43,6 +43,7 @@ bool solves_rtk(const UsedReceiver& receiver);
 bool reports_dead_reckoning(const UsedReceiver& receiver);
 bool has_texts_at_start(const UsedReceiver& receiver);
 bool has_wired_uart1(const UsedReceiver& receiver);
+bool is_can_node(const UsedReceiver& receiver);
 
 /// Commands of its client: configuration, polls.
 inline constexpr ReceiverNeed command_input{"takes no commands", takes_commands};
@@ -64,6 +65,7 @@ inline constexpr ReceiverNeed dead_reckoning_report{"never reports dead reckonin
 inline constexpr ReceiverNeed time_mode{"has no CFG-TMODE for a fix of time only",
                                         can<&firmware::Abilities::time_mode>};
 inline constexpr ReceiverNeed start_texts{"sends no texts when it starts", has_texts_at_start};
+inline constexpr ReceiverNeed can_node{"is not a node of a CAN bus", is_can_node};
 inline constexpr ReceiverNeed wired_uart1{"has nothing at its UART1", has_wired_uart1};
 
 /// Whether it sends a message with its epochs, from the factory on or once a client has enabled it.

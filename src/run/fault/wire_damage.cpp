@@ -195,8 +195,8 @@ void make_sensible(std::vector<GarbageBursts>& garbage) {
 
 WireDirection sensible(WireDirection direction) {
     for (double* probability :
-         {&direction.byte_loss, &direction.bit_errors, &direction.checksum_errors, &direction.truncation,
-          &direction.merging, &direction.duplication, &direction.reordering})
+         {&direction.byte_loss, &direction.message_loss, &direction.bit_errors, &direction.checksum_errors,
+          &direction.truncation, &direction.merging, &direction.duplication, &direction.reordering})
         *probability = probability_of(*probability);
     make_sensible(direction.garbage);
     direction.delay = Seconds(amount_of(direction.delay.value(), longest_held_s));

@@ -30,6 +30,7 @@ struct GarbageBursts {
 struct WireDirection {
     bool dead = false;                     ///< nothing comes through
     double byte_loss = 0;                  ///< of each byte
+    double message_loss = 0;               ///< of each message: it is missing as a whole
     double bit_errors = 0;                 ///< of each bit
     double checksum_errors = 0;            ///< of each message: one bit of it is turned, so that its checksum is wrong
     double truncation = 0;                 ///< of each message: its end is missing
@@ -79,11 +80,11 @@ struct WireDamageCounts {
 /// wire, faults of corrections, faults of messages, loss and bit errors, delay and jitter, a stall, the limit of
 /// throughput.
 ///
-/// Messages are UBX, NMEA, RTCM 3 and SBF with right checksums; everything else passes the faults of messages, but
-/// waits for its turn. While one of these faults is on (jitter and garbage among them) bytes are kept until their
-/// message is whole, no longer than 0.1 s after the last byte and 1 s after the first, and then come as they are; a
-/// message that is to come after the next one waits 2 s for it at most. Garbage that is due during a message comes
-/// after it.
+/// Messages are UBX, NMEA, RTCM 3 and SBF with right checksums, and frames of a CAN bus; everything else passes the
+/// faults of messages, but waits for its turn. While one of these faults is on (jitter and garbage among them) bytes
+/// are kept until their message is whole, no longer than 0.1 s after the last byte and 1 s after the first, and then
+/// come as they are; a message that is to come after the next one waits 2 s for it at most. Garbage that is due during
+/// a message comes after it.
 ///
 /// With more than `capacity` bytes on their way the newest are lost. When faults end, what they held comes out in its
 /// order at that instant; all that a dead wire holds is lost. Probabilities, times and rates that make no sense (not

@@ -262,6 +262,15 @@ void read_maker(TableReader& top, MakerKind& maker) {
     if (index) maker = static_cast<MakerKind>(*index);
 }
 
+void read_board_can(TableReader& table, firmware::CanNode& can) {
+    constexpr std::size_t longest_name = 80;
+    table.integer("node_id", can.node_id, {0, 125});
+    table.text("name", can.name);
+    if (can.name.empty() || can.name.size() > longest_name)
+        table.mistake("name", fmt::format("has {} characters; expected 1 to {}", can.name.size(), longest_name));
+    table.boolean("two_antennas", can.two_antennas);
+}
+
 // Tables that are one maker's alone.
 void refuse_tables_of_others(TableReader& top, MakerKind maker) {
     const auto refuse = [&](std::string_view table, MakerKind owner, std::string_view what) {
@@ -271,6 +280,7 @@ void refuse_tables_of_others(TableReader& top, MakerKind maker) {
     };
     refuse("config", MakerKind::ublox, "configuration items");
     refuse("sbf", MakerKind::sbf, "streams of blocks");
+    refuse("dronecan", MakerKind::dronecan, "node ids");
 }
 
 }  // namespace
@@ -316,6 +326,7 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     top.table("nmea", [&](TableReader& t) { read_board_nmea(t, board); });
     top.table("ubx", [&](TableReader& t) { read_board_ubx(t, board); });
     top.table("sbf", [&](TableReader& t) { read_board_sbf(t, board); });
+    top.table("dronecan", [&](TableReader& t) { read_board_can(t, board.can); });
     if (board.messages.empty())
         for (const std::string_view name : firmware::nmea_sentence_names)
             board.messages.push_back(firmware::find_output_message(name)->id);

@@ -64,7 +64,8 @@ const toml::table* table_at(const toml::table& top, std::string_view path) {
 
 // Messages and items have tables of their own; what was not said of a legacy message has no standard.
 bool is_listed(const KeyTable& table, const KeyEntry& key, const toml::table* given) {
-    const bool optional = table.path == "ubx.legacy" || table.path == "usb" || table.path == "sbf";
+    const bool optional =
+        table.path == "ubx.legacy" || table.path == "usb" || table.path == "sbf" || table.path == "dronecan";
     if (key.type == KeyType::table || key.type == KeyType::named_values || table.path == "config") return false;
     if (table.path.empty()) return key.name == "personality";
     return !(table.path == "ubx" && key.name == "messages") &&

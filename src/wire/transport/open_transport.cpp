@@ -24,7 +24,7 @@ struct Scheme {
     std::string_view shape;  // as it is offered
     std::string_view rest;   // what stands behind the colon
 };
-constexpr std::array<Scheme, 9> schemes{
+constexpr std::array<Scheme, 10> schemes{
     {{"pty", WireKind::pty, "pty[:LINK]", "a path"},
      {"serial", WireKind::serial, "serial:DEVICE[@BAUD]", "a device"},
      {"usb", WireKind::usb, "usb:VID:PID[:SERIAL]", "a device"},
@@ -33,6 +33,7 @@ constexpr std::array<Scheme, 9> schemes{
      {"tcp", WireKind::tcp, "tcp:[HOST:]PORT[@BAUD]", "a port"},
      {"tcp-connect", WireKind::tcp_connect, "tcp-connect:HOST:PORT[@BAUD]", "a host and its port"},
      {"rfc2217", WireKind::rfc2217, "rfc2217:[HOST:]PORT", "a port"},
+     {"dronecan", WireKind::can, "dronecan:BUS", "a bus"},
      {"file", WireKind::file, "file:PATH", "a path"}}};
 
 std::string offered() {
@@ -119,6 +120,8 @@ Result<void> read_rest(std::string_view rest, PortUri& port) {
         case WireKind::usbip:
         case WireKind::rfc2217:
             return take(parse_network(port.kind, rest), port.address);
+        case WireKind::can:
+            return take(parse_can_address(rest), port.can);
         case WireKind::pty:
         case WireKind::file:
         case WireKind::standard_output:
@@ -132,6 +135,13 @@ template <class Wire>
 Result<std::unique_ptr<Transport>> as_transport(Result<std::unique_ptr<Wire>> wire) {
     if (!wire) return fail(wire.error());
     return std::unique_ptr<Transport>(std::move(*wire));
+}
+
+Result<std::unique_ptr<Transport>> open_node(const CanAddress& address, std::string_view uri, CanBuses* buses) {
+    CanBuses own;
+    auto bus = (buses == nullptr ? own : *buses).open(address, std::string(uri));
+    if (!bus) return fail(bus.error());
+    return std::unique_ptr<Transport>(std::make_unique<CanTransport>(std::move(*bus)));
 }
 
 }  // namespace
@@ -162,7 +172,7 @@ Result<PortUri> parse_port_uri(std::string_view uri) {
     return port;
 }
 
-Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const UsbFace& face) {
+Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const UsbFace& face, CanBuses* buses) {
     const auto port = parse_port_uri(uri);
     if (!port) return fail(port.error());
     switch (port->kind) {
@@ -183,6 +193,8 @@ Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const Us
             return as_transport(TcpClientTransport::open(port->address));
         case WireKind::rfc2217:
             return as_transport(Rfc2217Transport::listen(port->address));
+        case WireKind::can:
+            return open_node(port->can, uri, buses);
         case WireKind::file:
             return as_transport(FileTransport::open(port->path));
         case WireKind::standard_output:

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/core/result.hpp"
+#include "wire/transport/can_transport.hpp"
 #include "wire/transport/cdc_acm_device.hpp"
 #include "wire/transport/serial.hpp"
 #include "wire/transport/tcp.hpp"
@@ -18,7 +19,7 @@
 namespace skyloop::inline wire {
 
 /// The wires of this version.
-enum class WireKind { pty, serial, usb, hid, usbip, tcp, tcp_connect, rfc2217, file, standard_output };
+enum class WireKind { pty, serial, usb, hid, usbip, tcp, tcp_connect, rfc2217, can, file, standard_output };
 
 /// A wire as it was asked for, not opened.
 struct PortUri {
@@ -26,7 +27,8 @@ struct PortUri {
     std::string path;  ///< the link of a pty, or empty; the path of a file
     TcpAddress address{};
     SerialAddress serial{};
-    UsbBridgeAddress bridge{};            ///< of usb and hid
+    UsbBridgeAddress bridge{};  ///< of usb and hid
+    CanAddress can{};
     std::optional<std::uint32_t> baud{};  ///< of tcp and tcp-connect: at which the receiver's UART begins, bit/s
 };
 /// "pty[:LINK]" and so on: each kind that has a name, as help texts offer it.
@@ -36,9 +38,12 @@ Result<PortUri> parse_port_uri(std::string_view uri);
 
 /// Opens `pty`, `pty:LINK`, `serial:DEVICE[@BAUD][,8N1][,rtscts]`, `usb:VID:PID[:SERIAL|@PORT][,BAUD][,8N1]`, `hid:`
 /// the same with [,rtscts], `usbip:[HOST:]PORT`, `tcp:[HOST:]PORT[@BAUD]`, `tcp-connect:HOST:PORT[@BAUD]`,
-/// `rfc2217:[HOST:]PORT`, `file:PATH` or `-` (standard output). Fails with `usage` for anything else, with `outside`
-/// when the system refuses; the sentence names the URI, the address, the device or the path.
+/// `rfc2217:[HOST:]PORT`, `dronecan:BUS` (parse_can_address()), `file:PATH` or `-` (standard output). Fails with
+/// `usage` for anything else, with `outside` when the system refuses; the sentence names the URI, the address, the
+/// device or the path.
 /// @param face of the device that a USB/IP wire shows
-Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const UsbFace& face = {});
+/// @param buses of the run, so that several nodes share one; null: a bus of its own
+Result<std::unique_ptr<Transport>> open_transport(std::string_view uri, const UsbFace& face = {},
+                                                  CanBuses* buses = nullptr);
 
 }  // namespace skyloop::inline wire

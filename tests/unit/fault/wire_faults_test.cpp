@@ -82,9 +82,10 @@ WireRun run_with(const Fault& fault, int seconds) {
 std::size_t whole_messages(const WireRun& run) { return heard_stream(run.heard).messages.size(); }
 
 const std::vector<std::string> wire_names = {
-    "byte_loss",  "bit_flips",   "checksum_errors", "truncated_messages", "merged_messages",    "inserted_garbage",
-    "wire_delay", "wire_jitter", "stall",           "duplicate_messages", "reordered_messages", "saturated_uart",
-    "line_break", "unplugged",   "power_cut",       "speed_mismatch",     "one_direction_dead"};
+    "byte_loss",   "bit_flips",       "checksum_errors", "truncated_messages", "merged_messages",    "inserted_garbage",
+    "wire_delay",  "wire_jitter",     "stall",           "duplicate_messages", "reordered_messages", "saturated_uart",
+    "line_break",  "unplugged",       "power_cut",       "speed_mismatch",     "one_direction_dead", "can_bus_off",
+    "lost_frames", "reordered_frames"};
 
 TEST(WireFaults, AreAllListedAndExplained) {
     std::vector<std::string> names;

@@ -8,6 +8,7 @@
 #include "run/emulator/assembly.hpp"
 #include "run/emulator/osnma_files.hpp"
 #include "run/emulator/wires.hpp"
+#include "wire/transport/can_transport.hpp"
 
 namespace skyloop::inline run {
 
@@ -22,6 +23,7 @@ struct SharedParts {
     std::shared_ptr<const UrbanScene> scene;        // null: nothing stands around
     std::shared_ptr<const PreciseTruth> precise{};  // null: records are the truth
     std::shared_ptr<GasLossTable> gas_losses = std::make_shared<GasLossTable>();
+    std::shared_ptr<CanBuses> can_buses = std::make_shared<CanBuses>();
     std::shared_ptr<const OsnmaKeys> osnma = osnma_keys_of(scenario, start);  // null: there is none
 };
 

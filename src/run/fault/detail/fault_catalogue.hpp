@@ -48,6 +48,8 @@ std::vector<FaultKind> time_fault_kinds();            ///< of the solution
 std::vector<FaultKind> receiver_fault_kinds();
 std::vector<FaultKind> wire_fault_kinds();
 std::vector<FaultKind> correction_fault_kinds();
+std::vector<FaultKind> can_receiver_fault_kinds();  ///< of a node of a CAN bus
+std::vector<FaultKind> can_wire_fault_kinds();      ///< of its bus
 
 /// A fault of one edit: fault_of<&Fault::epoch>(…). An edit of epochs is of what the receiver believes, its coasting
 /// and limits among it; of one of reports the receiver itself knows nothing.

@@ -63,7 +63,8 @@ private:
         garbages,
         contents,
         jitters,
-        sources
+        sources,
+        losses
     };
     struct Arrival {
         GpsTime time;
