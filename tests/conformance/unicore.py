@@ -152,7 +152,7 @@ class Unicore(Client):
         text = f"$command,{line},response: {verdict}"
         return self.need(lambda item: isinstance(item, Line) and item.text == f"{text}*{xor(text)}", milliseconds, text)
 
-    def log(self, name, milliseconds=1500):
+    def logged(self, name, milliseconds=1500):
         return self.need(lambda item: item.kind == "log" and item.name == name, milliseconds, f"#{name}")
 
     def check_agrica(self, line):
@@ -186,7 +186,7 @@ class ArduPilotUnicore(Unicore):
             self.say(line)
         self.forget()
         self.say("VERSIONA")
-        fields = self.log("VERSIONA", 5000).fields
+        fields = self.logged("VERSIONA", 5000).fields
         model = self.board.name[-5:].upper()
         self.check(fields[0] == f'"{model}"' and len(fields) == 6, f"the version of a {model}", fields)
         self.settle()
@@ -322,7 +322,7 @@ class RtkBase(Unicore):
             self.forget()
             self.send(b"$VERSIONA*1B\r\n")
             if self.wait(lambda item: getattr(item, "text", "") == "$command,VERSIONA,response: OK*45", 2000):
-                fields = self.log("VERSIONA", 2000).fields
+                fields = self.logged("VERSIONA", 2000).fields
                 self.check(fields[0] in ('"UM980"', '"UM981"', '"UM982"'), "a known model", fields)
                 return
         self.fail("$command,VERSIONA,response: OK*45 at one of the speeds")

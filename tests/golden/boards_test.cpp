@@ -128,6 +128,7 @@ BoardProfile with_everything(BoardProfile board) {
     board.baud = 4'000'000;
     board.transmit_buffer_bytes = board.generated_ahead_bytes = 1 << 20;
     board.sbf_blocks.clear();
+    board.can.node_id = 42;
     if (board.maker == MakerKind::sbf)
         KnownSbfBlocks::any([&]<class Block>() {
             board.sbf_blocks.emplace_back(Block::message_name);
@@ -185,7 +186,8 @@ std::vector<StreamPiece> stream_of(const std::string& name) {
     rig.world = [&](GpsTime time) { return golden_epoch(time, index++); };
     rig.run(3s);
     ask_everything(rig);
-    StreamSplitter every_protocol({.msp = true, .mavlink = true, .sbf = true, .unicore = true});
+    const bool node = board_named(name).maker == MakerKind::dronecan;
+    StreamSplitter every_protocol({.msp = true, .mavlink = true, .sbf = true, .unicore = true, .can = node});
     Bytes stream;
     for (const Heard& heard : rig.heard())
         stream.insert(stream.end(), heard.piece.bytes.begin(), heard.piece.bytes.end());

@@ -35,14 +35,14 @@ std::uint8_t tracked_satellites(const Fix& fix) {
 
 UnicoreDeviations position_deviations(const Fix& fix) {
     const double horizontal = std::hypot(fix.dop.ndop, fix.dop.edop);
-    const double one = horizontal > 0 ? fix.horizontal_accuracy.value() / horizontal : 0;
-    return {one * fix.dop.ndop, one * fix.dop.edop, fix.vertical_accuracy.value()};
+    const double per_dop = horizontal > 0 ? fix.horizontal_accuracy.value() / horizontal : 0;
+    return {per_dop * fix.dop.ndop, per_dop * fix.dop.edop, fix.vertical_accuracy.value()};
 }
 
 UnicoreDeviations velocity_deviations(const Fix& fix) {
     const double all = std::hypot(fix.dop.ndop, fix.dop.edop, fix.dop.vdop);
-    const double one = all > 0 ? fix.speed_accuracy.value() / all : 0;
-    return {one * fix.dop.ndop, one * fix.dop.edop, one * fix.dop.vdop};
+    const double per_dop = all > 0 ? fix.speed_accuracy.value() / all : 0;
+    return {per_dop * fix.dop.ndop, per_dop * fix.dop.edop, per_dop * fix.dop.vdop};
 }
 
 std::optional<OtherAntenna> other_antenna(const ReportContext& context) {

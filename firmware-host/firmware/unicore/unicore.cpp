@@ -67,7 +67,11 @@ CommandOutcome UnicoreMaker::receive(const StreamPiece& piece, const Situation& 
     const std::uint32_t speed = config_.port(asked.from).baud;
     execute(to_string(piece.bytes), asked, outcome);
     // What follows was sent at a speed that the port no longer has, or to a receiver that starts.
-    if (outcome.reset || config_.port(asked.from).baud != speed) lines_.erase(asked.from);
+    const bool other_speed = config_.port(asked.from).baud != speed;
+    if (outcome.reset || other_speed) lines_.erase(asked.from);
+    // No log leaves at the old speed while answers still do.
+    constexpr std::chrono::milliseconds answers_of_a_burst{250};
+    if (other_speed) quiet_until_[asked.from] = asked.now + answers_of_a_burst;
     return outcome;
 }
 
@@ -86,7 +90,7 @@ void UnicoreMaker::restrict(NavigationState& state) const {
     relative->down_m *= -1;
 }
 
-void UnicoreMaker::follow(const NavigationState& state) {
+void UnicoreMaker::follow(const NavigationState& state, GpsTime) {
     constexpr double full_answers_after_s = 2;  // SparkFun_RTK_Everywhere asks again then
     has_started_ = has_started_ || state.since_boot.value() >= full_answers_after_s;
 }
@@ -96,6 +100,8 @@ DueMessages UnicoreMaker::due(PortId port, EpochMessages& made, const FirmwareFa
     const std::uint64_t tow_ms = whole_milliseconds(gps_stamp(made.state().epoch.fix.time));
     std::vector<const UnicoreLog*> logs;
     std::vector<UbxMessageId> corrections;
+    const auto quiet = quiet_until_.find(port);
+    if (quiet != quiet_until_.end() && made.state().epoch.fix.time < quiet->second) return due;
     for (const UnicoreLog& log : now_.logs) {
         if (log.port != port || tow_ms % log.period_ms != 0 || faults.withheld.contains(log.kind.id)) continue;
         logs.push_back(&log);

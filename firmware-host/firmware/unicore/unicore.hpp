@@ -19,11 +19,11 @@ public:
 
     [[nodiscard]] const ReceiverConfig& config() const override { return config_; }
     [[nodiscard]] std::uint64_t revision() const override { return revision_; }
-    std::vector<StreamPiece> cut(PortUnit& unit, ByteSpan bytes, GpsTime now) override;
+    std::vector<StreamPiece> cut(PortUnit& unit, ByteSpan bytes, GpsTime) override;
     [[nodiscard]] bool has_frames() const override { return false; }
     CommandOutcome receive(const StreamPiece& piece, const Situation& asked) override;
     void restrict(NavigationState& state) const override;
-    void follow(const NavigationState& state) override;
+    void follow(const NavigationState& state, GpsTime) override;
     DueMessages due(PortId port, EpochMessages& made, const FirmwareFaults& faults) override;
     [[nodiscard]] std::vector<Bytes> greeting(PortId port) const override;
     void restart(bool keeps_ram) override;
@@ -79,6 +79,7 @@ private:
     ReceiverConfig start_, config_;
     UnicoreSettings factory_, saved_, now_;
     std::map<PortId, CommandLineReader> lines_;
+    std::map<PortId, GpsTime> quiet_until_;  // ports whose speed has just been changed
     RandomStream pauses_;
     std::uint64_t revision_ = 1;
     bool has_started_ = true;  ///< so long ago that it answers VERSIONB in full

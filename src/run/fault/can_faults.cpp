@@ -8,12 +8,9 @@
 namespace skyloop::inline run {
 namespace {
 
-Result<Fault> make_node_silent(const Parameters& parameters, const FaultContext&) {
+Result<Fault> make_node_silent(const Parameters&, const FaultContext&) {
     return fault_of<&Fault::firmware>(
-        [fixes_go_on = parameters.flag("fixes_go_on")](firmware::FirmwareFaults& faults, const FaultMoment&) {
-            faults.no_node_status = true;
-            if (!fixes_go_on) faults.mute = true;
-        });
+        [](firmware::FirmwareFaults& faults, const FaultMoment&) { faults.no_node_status = true; });
 }
 
 Result<Fault> make_node_id_collision(const Parameters&, const FaultContext&) {
@@ -41,9 +38,10 @@ Result<Fault> of_frames(const Parameters& parameters, const FaultContext&) {
 
 constexpr auto node_kinds = without_strength(std::to_array<FaultKind>({
     FaultKind{"node_silent",
-              "The node sends no NodeStatus, so that others count it as lost after 3 s.",
-              "Firmware that hangs in one of its tasks, or a node that has lost its supply.",
-              {flag_parameter("fixes_go_on", false, "its other messages and its answers go on")},
+              "The node sends no NodeStatus, so that others count it as lost after 3 s; its other messages and its "
+              "answers go on. receiver_silent ends all of it.",
+              "Firmware that hangs in one of its tasks.",
+              {},
               make_node_silent}
         .that_needs(can_node),
     FaultKind{"node_id_collision",

@@ -60,7 +60,10 @@ std::vector<std::string> names_of_sent(const UsedReceiver& receiver, const Abili
 bool takes_commands(const UsedReceiver& receiver) { return firmware::abilities(receiver.board).takes_commands(); }
 
 bool reports_heading(const UsedReceiver& receiver) {
-    return can<&Abilities::heading>(receiver) || has_sentence(receiver, "THS");
+    const Abilities can = firmware::abilities(receiver.board);
+    // Whoever has a command line sends THS when it is asked, and knows itself whether it has a pair.
+    const bool by_command = can.choice == Abilities::MessageChoice::command_line;
+    return can.heading || (!by_command && has_sentence(receiver, "THS"));
 }
 
 bool reports_accuracies(const UsedReceiver& receiver) {

@@ -9,7 +9,7 @@
 #include "base/core/can_frame.hpp"
 #include "receiver/protocol/dronecan_transfer.hpp"
 #include "receiver/protocol/rtcm3.hpp"
-#include "receiver_rig.hpp"
+#include "support/receiver_rig.hpp"
 
 namespace skyloop::firmware {
 namespace {

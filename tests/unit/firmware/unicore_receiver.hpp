@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "firmware/core/receiver.hpp"
-#include "receiver_rig.hpp"
+#include "support/receiver_rig.hpp"
 
 namespace skyloop::firmware {
 

@@ -174,6 +174,7 @@ TEST_F(RoundTrip, KeepsTheOtherMessages) {
         expect_stable(vtg);
         Gsa gsa{"GN",
                 whole(0, 1) == 1,
+                true,
                 whole(1, 3),
                 {},
                 maybe(uniform(0.5, 99)),

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "memory_transport.hpp"
+#include "support/memory_transport.hpp"
 #include "wire/transport/open_transport.hpp"
 
 namespace skyloop {
