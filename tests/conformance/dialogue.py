@@ -19,7 +19,7 @@ class Client:
     after_power_on = 5.0  # seconds that its user leaves the receiver to start; a flight controller leaves none
     arguments = ()  # more arguments of `skyloop run`
     scenario = ""  # TOML that the arguments are laid over
-    port = ""  # of the board, "uart3"; empty: the first UART
+    laid_to = ""  # of the board, "uart3"; empty: the first UART
     orbits = ""  # file below the shared navigation data that the run uses; the client is skipped without it
 
     def __init__(self, wire, board):

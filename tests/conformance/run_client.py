@@ -40,7 +40,7 @@ def play(kind, board, variant):
             arguments.append(scenario)
         for _ in range(2 if variant == "restart" else 1):
             with receiver.start(board, folder, *arguments, moving="[trajectory]" in kind.scenario,
-                                port=kind.port) as emulator:
+                                port=kind.laid_to) as emulator:
                 try:
                     time.sleep(kind.after_power_on)
                     for _ in range(2 if variant == "reopen" else 1):

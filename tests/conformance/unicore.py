@@ -337,7 +337,7 @@ class SparkFunUnicore(Unicore):
     """SparkFun's library and RTK Everywhere at COM3: MODE three times, VERSIONB, CONFIG, then a rover."""
 
     name = "SparkFun RTK Everywhere, UM980"
-    port = "uart3"
+    laid_to = "uart3"
     after_power_on = 3.0
     lines = ("MODE ROVER SURVEY", "GPGGA COM3 0.5", "GPGSA COM3 0.5", "GPGST COM3 0.5", "GPGSV COM3 1", "GPRMC COM3 0.5",
              "BESTNAVB 0.20")

@@ -25,7 +25,7 @@ BoardProfile unicore_board() {
     return board;
 }
 
-void check_settings(const Maker& maker, const BoardProfile& board) {
+void check_unicore_settings(const Maker& maker, const BoardProfile& board) {
     const ReceiverConfig& config = maker.config();
     require(std::ranges::any_of(config.systems, gives_position));
     require(takes_baud(board, config.port(PortId::uart2).baud));
@@ -50,9 +50,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (outcome.answers.empty()) continue;
         const std::string first = to_string(outcome.answers.front());
         require(first.ends_with("\r\n") && first.starts_with("$command,"));
-        check_settings(*maker, board);
+        check_unicore_settings(*maker, board);
     }
     maker->restart(false);
-    check_settings(*maker, board);
+    check_unicore_settings(*maker, board);
     return 0;
 }

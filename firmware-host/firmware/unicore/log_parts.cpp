@@ -40,8 +40,8 @@ UnicoreDeviations position_deviations(const Fix& fix) {
 }
 
 UnicoreDeviations velocity_deviations(const Fix& fix) {
-    const double all = std::hypot(fix.dop.ndop, fix.dop.edop, fix.dop.vdop);
-    const double per_dop = all > 0 ? fix.speed_accuracy.value() / all : 0;
+    const double dops = std::hypot(fix.dop.ndop, fix.dop.edop, fix.dop.vdop);
+    const double per_dop = dops > 0 ? fix.speed_accuracy.value() / dops : 0;
     return {per_dop * fix.dop.ndop, per_dop * fix.dop.edop, per_dop * fix.dop.vdop};
 }
 
