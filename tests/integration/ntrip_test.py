@@ -41,6 +41,8 @@ CFG-TMODE-HEIGHT = 7700
 CFG-TMODE-FIXED_POS_ACC = 100
 CFG-MSGOUT-RTCM_3X_TYPE1005_UART1 = 5
 CFG-MSGOUT-RTCM_3X_TYPE1074_UART1 = 1
+CFG-MSGOUT-RTCM_3X_TYPE1094_UART1 = 1
+CFG-MSGOUT-RTCM_3X_TYPE1124_UART1 = 1
 [caster]
 listen = "127.0.0.1:0"
 """
@@ -270,8 +272,8 @@ class NtripTest(FolderTest):
                 self.assertTrue(told.endswith(b"ENDSOURCETABLE\r\n"), told)
         fields = told.split(b"\r\n\r\n")[1].split(b"\r\n")[0].decode().split(";")
         self.assertEqual(fields[:4], ["STR", "base", "base (ublox-f9p)", "RTCM 3.3"])
-        self.assertEqual(fields[4], "1005(5),1074(1)")  # the nominal constellation is of GPS alone
-        self.assertEqual(fields[5:8], ["2", "GPS", "none"])
+        self.assertEqual(fields[4], "1005(5),1074(1),1094(1),1124(1)")
+        self.assertEqual(fields[5:8], ["2", "GPS+GAL+BDS", "none"])
         self.assertEqual(fields[9:13], ["46.48", "30.73", "0", "0"])
         self.assertEqual(fields[15], "B")
         self.assertGreater(int(fields[17]), 1000)

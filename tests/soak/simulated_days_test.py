@@ -81,7 +81,8 @@ def day(board, client):
             wrong.append(f"run.json tells {run['simulated_s']} s and {run['epochs']} epochs, fixes.csv has {epochs}")
         if back:
             wrong.append(f"time ran backwards {back} times")
-        if run["ports"][0]["bytes_out"] == 0:
+        # Unicore's are silent until they are asked in words of their own.
+        if run["ports"][0]["bytes_out"] == 0 and not board.startswith("unicore-"):
             wrong.append("not a byte was sent")
         if board.startswith(DECODED):
             told = skyloop("decode", out / "port0.out", patience=600).stderr

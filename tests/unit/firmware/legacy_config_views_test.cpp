@@ -108,7 +108,7 @@ TEST(LegacyViews, PollsCarryEveryItemToAnotherReceiver) {
         ASSERT_NE(one.store.values(ConfigLayer::ram), other.store.values(ConfigLayer::ram));
         for (const int id : {0x08, 0x16, 0x1E, 0x39})
             EXPECT_EQ(other.set(cfg(id), one.poll(cfg(id))), Verdict::acknowledge) << id;
-        for (std::uint8_t port = 0; port < port_count; ++port)
+        for (std::uint8_t port = 0; port < ublox_port_count; ++port)
             EXPECT_EQ(other.set(cfg(0x00), one.poll(cfg(0x00), {port})), Verdict::acknowledge) << int{port};
         for (std::uint8_t protocol = 0; protocol < 2; ++protocol)
             EXPECT_EQ(other.set(cfg(0x02), one.poll(cfg(0x02), {protocol})), Verdict::acknowledge);

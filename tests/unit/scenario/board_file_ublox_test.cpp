@@ -292,7 +292,9 @@ TEST(BoardFileUblox, RefusesUnknownNamesWithTheNearest) {
     EXPECT_THAT(ublox_refusal("[navigation]\nsignal_conflicts = [\"CFG-RATE-MEAS\"]"),
                 HasSubstr("holds 'CFG-RATE-MEAS', which no item of CFG-SIGNAL is called"));
     EXPECT_THAT(ublox_refusal("personality = \"unlox\""), HasSubstr("did you mean 'ublox'?"));
-    EXPECT_THAT(ublox_refusal("[uart]\nports = [\"uart3\"]"), HasSubstr("expected a list of some of i2c uart1"));
+    EXPECT_THAT(ublox_refusal("[uart]\nports = [\"uart4\"]"), HasSubstr("expected a list of some of i2c uart1"));
+    EXPECT_THAT(ublox_refusal("personality = \"ublox\"\n[uart]\nports = [\"uart3\"]"),
+                HasSubstr("has uart3, which no u-blox receiver has"));
 }
 
 TEST(BoardFileUblox, RefusesValuesThatCannotBe) {
