@@ -54,7 +54,7 @@ TEST(OpenTransport, RefusesClearly) {
     EXPECT_EQ(refusal("can:0").message,
               "port 'can:0': no such kind of port; expected pty[:LINK], serial:DEVICE[@BAUD], usb:VID:PID[:SERIAL], "
               "hid:VID:PID[:SERIAL], usbip:[HOST:]PORT, tcp:[HOST:]PORT[@BAUD], tcp-connect:HOST:PORT[@BAUD], "
-              "rfc2217:[HOST:]PORT, file:PATH, client:NAME or -");
+              "rfc2217:[HOST:]PORT, dronecan:BUS, file:PATH, client:NAME or -");
     EXPECT_THAT(refusal("").message, HasSubstr("no such kind of port; expected pty[:LINK], "));
     EXPECT_THAT(refusal("pty:").message, HasSubstr("a path is missing"));
     EXPECT_THAT(refusal("file").message, HasSubstr("a path is missing"));
