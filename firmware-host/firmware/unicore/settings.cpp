@@ -141,8 +141,7 @@ bool has_two_antennas(const BoardProfile& board) { return board.identity.hardwar
 
 std::optional<UnicoreLogKind> unicore_log(const BoardProfile& board, std::string_view asked) {
     const std::string name = upper_case(asked);
-    if (auto sentence = sentence_log(name))
-        return sentence->name == "THS" && !has_two_antennas(board) ? std::nullopt : sentence;
+    if (auto sentence = sentence_log(name)) return sentence;
     if (auto rtcm = rtcm_log(name)) return rtcm;
     if (name.empty()) return std::nullopt;
     const std::string_view stem = std::string_view(name).substr(0, name.size() - 1);

@@ -22,7 +22,7 @@ constexpr Nanoseconds longest_message = std::chrono::seconds(1);
 constexpr Nanoseconds longest_lateness = std::chrono::seconds(2);
 constexpr double longest_pause_s = 1e9;
 
-constexpr StreamProtocols wire_protocols{true, true, true, true, true, true, true};
+constexpr StreamProtocols wire_protocols{.msp = true, .mavlink = true, .sbf = true, .unicore = true, .can = true};
 
 constexpr std::size_t rtcm3_payload_at = 3;  // RTCM 10403.3, section 4.2
 constexpr std::size_t sbf_payload_at = 8;    // after sync, CRC, ID and length
