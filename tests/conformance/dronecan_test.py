@@ -97,37 +97,35 @@ def is_configured(bus):
     check(told is not None and not told["name"], f"a parameter that is not there: {told}")
 
 
+def has_what_drivers_need(emulator, bus, begin=lambda: None, end=lambda: None):
+    try:
+        begin()
+        gets_an_id(bus)
+        is_well(bus)
+        has_fixes(bus, 5)
+        end()
+        check(not bus.bad, f"damaged transfers: {bus.bad}")
+    finally:
+        bus.close()
+    code = emulator.stop()
+    check(code == 0, f"skyloop ended {code}: {emulator.log}")
+
+
 def needs_of_ardupilot():
     with receiver.open_folder() as folder:
         with start(f"slcan:pty:{folder}/can0") as emulator:
             bus = can_bus.Bus(emulator.tty)
-            try:
+
+            def opens():
                 answers = bus.open()
                 check(answers == [b"\r", b"\a", b"\r", b"\r"], f"the adapter said {answers}")
-                gets_an_id(bus)
-                is_well(bus)
-                has_fixes(bus, 5)
-                is_configured(bus)
-                check(not bus.bad, f"damaged transfers: {bus.bad}")
-            finally:
-                bus.close()
-            code = emulator.stop()
-            check(code == 0, f"skyloop ended {code}: {emulator.log}")
+            has_what_drivers_need(emulator, bus, begin=opens, end=lambda: is_configured(bus))
 
 
 def by_multicast():
     """In a network of this process's own, where no other bus is disturbed."""
     with start("mcast:3") as emulator:
-        bus = can_bus.MulticastBus(3)
-        try:
-            gets_an_id(bus)
-            is_well(bus)
-            has_fixes(bus, 5)
-            check(not bus.bad, f"damaged transfers: {bus.bad}")
-        finally:
-            bus.close()
-        code = emulator.stop()
-        check(code == 0, f"skyloop ended {code}: {emulator.log}")
+        has_what_drivers_need(emulator, can_bus.MulticastBus(3))
 
 
 def in_own_network():

@@ -120,18 +120,24 @@ void append_pages(std::vector<Gsv>& out, const NmeaReport& r, const NmeaGroup& g
     }
 }
 
+// Receivers whose lists have what is tracked alone list BeiDou before Galileo (the same capture as in
+// talker_of_lists()).
+std::vector<NmeaGroup> beidou_before_galileo(std::vector<NmeaGroup> groups) {
+    const auto is_beidou = [](const NmeaGroup& group) { return group.system.talker == "GB"; };
+    const auto galileo =
+        std::ranges::find_if(groups, [](const NmeaGroup& group) { return group.system.talker == "GA"; });
+    std::stable_partition(galileo, groups.end(), is_beidou);
+    return groups;
+}
+
 }  // namespace
 
 std::vector<Gsv> gsv_messages(const NmeaReport& r) {
     const bool tracked_only = r.context.board.style.tracked_only;
-    std::vector<NmeaGroup> groups = r.groups;
-    // Such receivers list BeiDou before Galileo (the same capture as in talker_of_lists()).
-    const auto is_beidou = [](const NmeaGroup& group) { return group.system.talker == "GB"; };
-    const auto galileo =
-        std::ranges::find_if(groups, [](const NmeaGroup& group) { return group.system.talker == "GA"; });
-    if (tracked_only) std::stable_partition(galileo, groups.end(), is_beidou);
+    std::vector<NmeaGroup> reordered;
+    if (tracked_only) reordered = beidou_before_galileo(r.groups);
     std::vector<Gsv> out;
-    for (const NmeaGroup& group : groups) {
+    for (const NmeaGroup& group : tracked_only ? reordered : r.groups) {
         const SignalGroups lists = lists_of(r, group);
         if (!lists.empty())
             append_pages(out, r, group, lists);

@@ -6,33 +6,21 @@
 #include <iterator>
 #include <utility>
 
+#include "base/core/number_text.hpp"
+
 namespace skyloop::inline base {
 namespace {
 
 constexpr std::size_t extended_digits = 8, standard_digits = 3, stamp_digits = 4;
 constexpr std::uint32_t most_extended = 0x1FFF'FFFF, most_standard = 0x7FF;
 
-std::optional<std::uint32_t> hex_number(std::string_view digits) {
-    if (digits.empty() || digits.size() > 8) return std::nullopt;
-    std::uint32_t number = 0;
-    for (const char c : digits) {
-        const int digit = c >= '0' && c <= '9'   ? c - '0'
-                          : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                          : c >= 'a' && c <= 'f' ? c - 'a' + 10
-                                                 : -1;
-        if (digit < 0) return std::nullopt;
-        number = number << 4 | static_cast<std::uint32_t>(digit);
-    }
-    return number;
-}
-
 // Two digits a byte.
 std::optional<CanFrame> frame_of(std::string_view id, bool extended, std::string_view digits) {
-    const auto number = hex_number(id);
+    const auto number = hexadecimal_number_in<std::uint32_t>(id);
     if (!number || digits.size() % 2 != 0 || digits.size() > 2 * CanFrame::most_bytes) return std::nullopt;
     Bytes bytes;
     for (std::size_t at = 0; at < digits.size(); at += 2) {
-        const auto byte = hex_number(digits.substr(at, 2));
+        const auto byte = hexadecimal_number_in<std::uint32_t>(digits.substr(at, 2));
         if (!byte) return std::nullopt;
         bytes.push_back(static_cast<std::uint8_t>(*byte));
     }
@@ -65,7 +53,8 @@ std::optional<CanFrame> parse_slcan_line(std::string_view line) {
     if (count < '0' || count > '8') return std::nullopt;
     const std::size_t digits = 2 * static_cast<std::size_t>(count - '0');
     const bool whole = line.size() == head + digits;
-    const bool stamped = line.size() == head + digits + stamp_digits && hex_number(line.substr(head + digits));
+    const bool stamped =
+        line.size() == head + digits + stamp_digits && hexadecimal_number_in<std::uint32_t>(line.substr(head + digits));
     if (!whole && !stamped) return std::nullopt;
     return frame_of(line.substr(1, id_digits), extended, line.substr(head, digits));
 }

@@ -58,9 +58,22 @@ private:
     std::uint64_t lost_ = 0;
 };
 
-class SlcanServer : public CanEnd {
+// A bus at the other end of a serial line.
+class LineEnd : public CanEnd {
 public:
-    explicit SlcanServer(std::unique_ptr<Transport> terminal) : out_(std::move(terminal)) {}
+    explicit LineEnd(std::unique_ptr<Transport> line) : out_(std::move(line)) {}
+    std::vector<std::string> take_news() override { return out_.line().take_news(); }
+    [[nodiscard]] std::string failure() const override { return out_.line().failure(); }
+    [[nodiscard]] std::string notice() const override { return out_.notice(); }
+    [[nodiscard]] std::string description() const override { return out_.description(); }
+
+protected:
+    LineSender out_;
+};
+
+class SlcanServer : public LineEnd {
+public:
+    using LineEnd::LineEnd;
 
     void send(const CanFrame& frame) override { out_.send(adapter_.line_of(frame, milliseconds_of_host())); }
     std::vector<CanFrame> receive() override {
@@ -75,19 +88,14 @@ public:
         return std::move(taken.frames);
     }
     bool connected() override { return adapter_.is_open(); }
-    std::vector<std::string> take_news() override { return out_.line().take_news(); }
-    [[nodiscard]] std::string failure() const override { return out_.line().failure(); }
-    [[nodiscard]] std::string notice() const override { return out_.notice(); }
-    [[nodiscard]] std::string description() const override { return out_.description(); }
 
 private:
-    LineSender out_;
     SlcanAdapter adapter_;
 };
 
-class SlcanClient : public CanEnd {
+class SlcanClient : public LineEnd {
 public:
-    explicit SlcanClient(std::unique_ptr<Transport> adapter) : out_(std::move(adapter)) {}
+    using LineEnd::LineEnd;
 
     void send(const CanFrame& frame) override {
         if (open_) out_.send(slcan_line(frame));
@@ -110,13 +118,8 @@ public:
         return frames;
     }
     bool connected() override { return open_; }
-    std::vector<std::string> take_news() override { return out_.line().take_news(); }
-    [[nodiscard]] std::string failure() const override { return out_.line().failure(); }
-    [[nodiscard]] std::string notice() const override { return out_.notice(); }
-    [[nodiscard]] std::string description() const override { return out_.description(); }
 
 private:
-    LineSender out_;
     SlcanLines lines_;
     bool open_ = false;
 };

@@ -17,12 +17,7 @@ using testing::MatchesRegex;
 using testing::SizeIs;
 
 TEST_F(UnicoreReceiver, WritesSentencesAsItsCapturesHaveThem) {
-    for (const char* const log : {"GPRMC 1", "GPGGA 1", "GPGSA 1", "GPGSV 1", "GPVTG 1", "GPGLL 1"})
-        say(log);
-    wait(1s);
-    forget();
-    wait(1s);
-    const auto all = texts();
+    const auto all = usual_sentences();
     ASSERT_GE(all.size(), 8u);
     EXPECT_THAT(all[0],
                 MatchesRegex("\\$GNRMC,1200..\\.00,A,4723\\.86200000,N,00832\\.73600000,E,15\\.667,7\\.1,050324,"
@@ -46,12 +41,7 @@ TEST_F(UnicoreReceiver, WithoutAFixSentencesAreThoseOfACapture) {
     epoch_.fix.type = FixType::none;
     for (SatelliteStatus& s : epoch_.fix.satellites)
         s.used = false, s.cn0.reset();
-    for (const char* const log : {"GPRMC 1", "GPGGA 1", "GPGSA 1", "GPGSV 1", "GPVTG 1", "GPGLL 1"})
-        say(log);
-    wait(1s);
-    forget();
-    wait(1s);
-    const auto all = texts();
+    const auto all = usual_sentences();
     ASSERT_THAT(all, SizeIs(6));
     EXPECT_THAT(all[0], MatchesRegex("\\$GNRMC,1200..\\.00,V,,,,,,,050324,0\\.0,E,N,V\\*.."));
     EXPECT_THAT(all[1], MatchesRegex("\\$GNGGA,1200..\\.00,,,,,0,00,9999\\.0,,,,,,\\*.."));

@@ -64,6 +64,15 @@ protected:
             if (line.text.starts_with(begin)) found.push_back(line);
         return found;
     }
+    // One second of the sentences that most receivers send.
+    std::vector<std::string> usual_sentences() {
+        for (const char* const log : {"GPRMC 1", "GPGGA 1", "GPGSA 1", "GPGSV 1", "GPVTG 1", "GPGLL 1"})
+            say(log);
+        wait(std::chrono::seconds(1));
+        forget();
+        wait(std::chrono::seconds(1));
+        return texts();
+    }
     void forget() {
         lines_.clear();
         bytes_.clear();
