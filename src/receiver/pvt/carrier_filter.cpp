@@ -23,6 +23,7 @@ constexpr double place_deviation_m = 1000, ambiguity_deviation_m = 20;
 constexpr std::size_t least_satellites = 4;
 // A phase that fits neither by its deviation nor by a part of a cycle has lost its count.
 constexpr double misfit_deviations = 5, misfit_m = 0.05;
+constexpr Seconds longest_step{3};  // of epochs of a signal that was not missed
 constexpr double most_misfit_of_codes = 25;  // of their variances
 
 // What fits worse than its variance expects makes a solution that is worse by as much.
@@ -62,10 +63,10 @@ void CarrierFilter::State::arrange(std::span<const SingleDifference> differences
     state_.arrange({wanted.begin(), wanted.end()}, [&](const StateName& name) { return variance_of(name, spacing); });
     for (const SingleDifference& d : differences) {
         const auto known = tracked_.find(ambiguity_of(d));
-        if (known == tracked_.end() || d.broken)
-            begin_ambiguity(d, time, d.tracked);
-        else
-            known->second.seen = time;
+        const bool missed = known == tracked_.end() || difference(time, known->second.seen) > longest_step;
+        if (missed || d.broken) begin_ambiguity(d, time, d.tracked);
+        if (missed) tracked_.at(ambiguity_of(d)).code_since = advanced(time, -d.tracked);
+        tracked_.at(ambiguity_of(d)).seen = time;
         tracked_.at(ambiguity_of(d)).echo_variance = d.echo_variance / square(d.wavelength_m);
     }
 }
@@ -107,16 +108,22 @@ bool CarrierFilter::State::settled(const SingleDifference& d) const {
     return difference(*time_, tracked_.at(ambiguity_of(d)).since) >= p_.settled_after;
 }
 
-// By how much the variance of a code is larger. Loops that have just begun are off by more than they will be; after
-// that errors last, so that codes say something new by and by.
-double CarrierFilter::State::code_weakness(const SingleDifference& d, Seconds passed) const {
-    constexpr double of_young = 4;
-    if (!settled(d)) return of_young;
-    if (tracked_.at(ambiguity_of(d)).fresh) return 1;
-    return std::max(1.0, 2 * p_.code_memory.value() / std::max(passed.value(), 1e-3));
+// By how much the variance of a code is larger. A loop averages its noise away while it runs; what else a code is off
+// by lasts. So what codes say grows by and by.
+double CarrierFilter::State::code_weakness(const SingleDifference& d, bool at_first) const {
+    const Tracked& tracked = tracked_.at(ambiguity_of(d));
+    const double age_s = difference(*time_, tracked.code_since).value();
+    const auto told_by = [&](double at_s) {
+        const double averaged_s = std::max(at_s, 0.5);
+        return averaged_s / (averaged_s + p_.code_averaging.value());
+    };
+    if (at_first || tracked.fresh) return 1 / told_by(age_s);
+    const double more = told_by(age_s) - told_by(age_s - passed_.value());
+    return 1 / std::max(more + 0.5 * passed_.value() / p_.code_memory.value(), 1e-4);
 }
 
-GroupEquations CarrierFilter::State::equations(const Group& group, bool phase, Seconds passed) const {
+GroupEquations CarrierFilter::State::equations(const Group& group, Says says) const {
+    const bool phase = says == Says::phase;
     const auto count = static_cast<Index>(group.size());
     MatrixXd rows(count, state_.size());
     VectorXd observed(count), variances(count);
@@ -124,7 +131,7 @@ GroupEquations CarrierFilter::State::equations(const Group& group, bool phase, S
         const SingleDifference& d = *group[static_cast<std::size_t>(i)];
         rows.row(i) = row_of(d, phase);
         observed(i) = phase ? d.phase_m : d.code_m;
-        variances(i) = phase ? d.phase_variance : d.code_variance * code_weakness(d, passed);
+        variances(i) = phase ? d.phase_variance : d.code_variance * code_weakness(d, says == Says::code);
     }
     const VectorXd off = observed - rows * state_.values;
     const Index others = count - 1;
@@ -135,10 +142,10 @@ GroupEquations CarrierFilter::State::equations(const Group& group, bool phase, S
 }
 
 void CarrierFilter::State::use_codes(const Group& group) {
-    const GroupEquations e = equations(group, false, passed_);
+    const GroupEquations e = equations(group, Says::news_of_code);
     state_.absorb(e.design, e.misfit, e.noise);
     for (const SingleDifference* d : group)
-        if (settled(*d)) tracked_.at(ambiguity_of(*d)).fresh = false;
+        tracked_.at(ambiguity_of(*d)).fresh = false;
 }
 
 // False: most of them do not fit what was known. One that does not is taken for a slip; when it is the reference, the
@@ -146,7 +153,7 @@ void CarrierFilter::State::use_codes(const Group& group) {
 bool CarrierFilter::State::use_phases(Group group, GpsTime time) {
     bool fits = true;
     while (group.size() >= 2) {
-        const GroupEquations e = equations(group, true, {});
+        const GroupEquations e = equations(group, Says::phase);
         const VectorXd expected = (e.design * state_.covariance * e.design.transpose() + e.noise).diagonal();
         std::vector<std::size_t> slipped;
         for (Index i = 0; i < e.misfit.size(); ++i)
@@ -174,7 +181,7 @@ bool CarrierFilter::State::use_phases(Group group, GpsTime time) {
 double CarrierFilter::State::misfit_of_codes() const {
     double squares = 0, count = 0;
     for (const auto& [name, group] : groups_) {
-        const GroupEquations e = equations(group, false, 2 * p_.code_memory);
+        const GroupEquations e = equations(group, Says::code);
         squares += e.misfit.cwiseAbs2().cwiseQuotient(e.noise.diagonal()).sum();
         count += static_cast<double>(e.misfit.size());
     }

@@ -108,6 +108,7 @@ struct DifferentialParameters {
 struct CarrierParameters {
     Metres code_floor{0.6}, code_at_zenith{0.8};  ///< of a code: √(floor² + (at_zenith/sin e)²), more below 40 dBHz
     Seconds code_memory{45};                      ///< for which errors of a code last
+    Seconds code_averaging{15};                   ///< by a loop, until half of what it will tell is told
     Metres phase_noise{0.001};                    ///< of a phase, new with each epoch
     Metres phase_echo_at_zenith{0.003};           ///< what echoes do to a phase, over sin e
     Seconds phase_memory{60};                     ///< for which that lasts

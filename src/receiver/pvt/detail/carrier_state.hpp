@@ -47,6 +47,7 @@ public:
 private:
     struct Tracked {
         GpsTime since, seen;
+        GpsTime code_since;        // slips do not touch the loop of the code
         bool fresh = true;         // its code has not counted yet
         double echo_variance = 0;  // of its phase, cycles²
     };
@@ -57,8 +58,9 @@ private:
     void begin_ambiguity(const SingleDifference& d, GpsTime time, Seconds tracked);
     [[nodiscard]] Eigen::RowVectorXd row_of(const SingleDifference& d, bool phase) const;
     [[nodiscard]] bool settled(const SingleDifference& d) const;
-    [[nodiscard]] double code_weakness(const SingleDifference& d, Seconds passed) const;
-    [[nodiscard]] GroupEquations equations(const Group& group, bool phase, Seconds passed) const;
+    [[nodiscard]] double code_weakness(const SingleDifference& d, bool at_first) const;
+    enum class Says { phase, code, news_of_code };  // since the epoch before
+    [[nodiscard]] GroupEquations equations(const Group& group, Says says) const;
     void use_codes(const Group& group);
     bool use_phases(Group group, GpsTime time);
     [[nodiscard]] double misfit_of_codes() const;
