@@ -23,7 +23,7 @@ constexpr double place_deviation_m = 1000, ambiguity_deviation_m = 20;
 constexpr std::size_t least_satellites = 4;
 // A phase that fits neither by its deviation nor by a part of a cycle has lost its count.
 constexpr double misfit_deviations = 5, misfit_m = 0.05;
-constexpr Seconds longest_step{3};  // of epochs of a signal that was not missed
+constexpr Seconds longest_step{3};           // of epochs of a signal that was not missed
 constexpr double most_misfit_of_codes = 25;  // of their variances
 
 // What fits worse than its variance expects makes a solution that is worse by as much.

@@ -53,7 +53,7 @@ MatrixXd CarrierFilter::State::echoes(const std::vector<AmbiguityPair>& pairs) c
     return covariance;
 }
 
-std::optional<FixedOffset> CarrierFilter::State::fix(const std::vector<AmbiguityPair>& pairs, double least_success) {
+std::optional<FixedOffset> CarrierFilter::State::fix(const std::vector<AmbiguityPair>& pairs) {
     const auto count = static_cast<Index>(pairs.size());
     const MatrixXd& p = state_.covariance;
     VectorXd floats(count);
@@ -69,7 +69,7 @@ std::optional<FixedOffset> CarrierFilter::State::fix(const std::vector<Ambiguity
         covariance.col(i) += differenced.col(pair.at) - differenced.col(pair.reference);
     }
     const auto found = search_integers(floats, covariance);
-    if (!found || found->success < least_success || found->gap() < p_.least_gap) return std::nullopt;
+    if (!found || found->success < p_.least_success || found->gap() < p_.least_gap) return std::nullopt;
     const Eigen::LDLT<MatrixXd> weights(covariance);
     const MatrixXd of_place = differenced.leftCols<3>();
     FixedOffset fixed;
@@ -119,8 +119,7 @@ std::optional<FixedOffset> CarrierFilter::State::fix() {
         const std::vector<AmbiguityPair> chosen = pairs(variance_of_best(part.share), part.tracked);
         if (chosen.size() < least_pairs || chosen.size() == last) continue;
         last = chosen.size();
-        const double least = part.share < 1 ? p_.least_success_of_part : p_.least_success;
-        if (auto fixed = fix(chosen, least)) {
+        if (auto fixed = fix(chosen)) {
             unfixed_since_.reset();
             hope_ = hope_lasts;
             return fixed;

@@ -123,14 +123,15 @@ Angle told_course_accuracy(MetresPerSecond speed, MetresPerSecond speed_accuracy
     return Angle::radians(std::min(turn, std::numbers::pi));
 }
 
-ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, Metres floor, const ReferenceSpacing& reference,
-                           const CarrierParameters& parameters) {
+ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, Metres floor,
+                           const ReferenceSpacing& reference, const CarrierParameters& parameters) {
     const double apart = parameters.told_per_length * reference.length.value();
     const double old = parameters.per_age.value() * reference.age.value();
-    const auto told = [&](double variance) {
-        return Metres(std::sqrt(variance + floor.value() * floor.value() + apart * apart + old * old));
+    const double of_ranges = floor.value() * floor.value() + apart * apart;
+    const auto told = [&](double variance, double dilution) {
+        return Metres(std::sqrt(variance + dilution * dilution * of_ranges + old * old));
     };
-    return {told(covariance(0, 0) + covariance(1, 1)), told(covariance(2, 2))};
+    return {told(covariance(0, 0) + covariance(1, 1), dop.hdop), told(covariance(2, 2), dop.vdop)};
 }
 
 ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,

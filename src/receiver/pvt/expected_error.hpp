@@ -98,9 +98,11 @@ struct ReferenceSpacing {
     Metres length;
     Seconds age;
 };
-/// Of a solution against a reference station: its noise, a floor, and what grows with distance and age.
-ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, Metres floor, const ReferenceSpacing& reference,
-                           const CarrierParameters& parameters);
+/// Of a solution against a reference station: its noise, a floor of the ranges' errors and what they grow by with
+/// distance, both times the DOP, and what grows with age.
+/// @param covariance of the position, east, north, up, m²
+ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, Metres floor,
+                           const ReferenceSpacing& reference, const CarrierParameters& parameters);
 /// Of solutions by carrier phases the accuracy of a good sky, the more in a poor one.
 /// @param covariance of the position, east, north, up, m²
 ToldAccuracy told_accuracy(const Eigen::Matrix3d& covariance, const Dop& dop, DifferentialKind kind,

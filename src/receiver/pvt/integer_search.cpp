@@ -181,7 +181,11 @@ double IntegerCandidates::ratio() const {
     return best_norm > 0 ? second_norm / best_norm : std::numeric_limits<double>::infinity();
 }
 
-double IntegerCandidates::gap() const { return (second_norm - best_norm) / std::max(1.0, misfit()); }
+double IntegerCandidates::gap() const {
+    constexpr double taken_by_place = 3, least_variance = 0.35;
+    const double free = std::max(1.0, static_cast<double>(best.size()) - taken_by_place);
+    return (second_norm - best_norm) / std::max(least_variance, best_norm / free);
+}
 
 double IntegerCandidates::misfit() const { return best_norm / static_cast<double>(best.size()); }
 

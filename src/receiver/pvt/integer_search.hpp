@@ -17,10 +17,10 @@ struct IntegerCandidates {
 
     /// How much worse the second best is, as receivers tell it.
     [[nodiscard]] double ratio() const;
-    /// The difference test: by how much worse the second best is, in units of what misfits the best one shows, where
-    /// these are more than their covariance expects. Twice the logarithm of how much more probable the best one is
-    /// (Verhagen 2005, The GNSS integer ambiguities, chapter 3). Other than of the ratio, its limit is the same for few
-    /// ambiguities and for many.
+    /// The difference test: by how much worse the second best is, in units of what the best one misfits by, for each of
+    /// the ambiguities that the place leaves free; of variances that are too large, at most three times. Twice the
+    /// logarithm of how much more probable the best one is (Verhagen 2005, The GNSS integer ambiguities, chapter 3).
+    /// Other than of the ratio, its limit is the same for few ambiguities and for many.
     [[nodiscard]] double gap() const;
     /// Of the best one, squared, for each ambiguity; 1 where the covariance is right.
     [[nodiscard]] double misfit() const;

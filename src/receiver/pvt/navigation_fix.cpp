@@ -45,8 +45,8 @@ Metres NavigationEngine::State::fill_accuracy(const EpochSolution& epoch, Fix& f
     if (epoch.time_only) return Metres(0);
     if (carrier_) expected.position = carrier_->covariance;
     const Eigen::Matrix3d q = in_enu(LocalFrame(fix.position), expected.position);
-    const ToldAccuracy told = reference_ ? told_accuracy(q, carrier_ ? parameters_.carrier.told_floor : Metres(0),
-                                                         *reference_, parameters_.carrier)
+    const Metres floor = carrier_ ? parameters_.carrier.told_floor : Metres(0);
+    const ToldAccuracy told = reference_ ? told_accuracy(q, fix.dop, floor, *reference_, parameters_.carrier)
                                          : told_accuracy(q, fix.dop, kind, parameters_.differential);
     fix.horizontal_accuracy = told.horizontal;
     fix.vertical_accuracy = told.vertical;

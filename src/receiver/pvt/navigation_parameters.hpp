@@ -122,14 +122,13 @@ struct CarrierParameters {
     Angle integers_from = Angle::degrees(12);  ///< elevation of satellites whose ambiguities are fixed
     Seconds settled_after{1};                  ///< of tracking at both ends, an ambiguity may be fixed
     double least_gap = 20;                     ///< of IntegerCandidates::gap()
-    double least_success = 0.6;                ///< of IntegerCandidates::success
-    double least_success_of_part = 0.7;        ///< where ambiguities are left out
+    double least_success = 0.4;                ///< of IntegerCandidates::success
     Metres most_when_fixed{0.1};               ///< deviation of a place in space that whole ambiguities give
     Seconds hold_after{5};                     ///< since they were fixed without a break, ambiguities are held
     Seconds memory{30};                        ///< of an ambiguity whose signal is missed
     int most_misfits = 3;             ///< epochs in which most phases contradict what is held, until all begins anew
-    double told_per_length = 1.4e-6;  ///< of the reported accuracies, beside the filter's
-    Metres told_floor{0.006};         ///< the same
+    double told_per_length = 1.8e-6;  ///< of the reported accuracies over the DOP, beside the filter's
+    Metres told_floor{0.008};         ///< the same
 };
 
 /// What the receiver must hear of the satellites' data.

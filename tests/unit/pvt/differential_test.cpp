@@ -207,6 +207,24 @@ TEST(Differential, SlipsAreFoundAndMended) {
     }
 }
 
+// Loops that have just locked are off by metres, and average that away: ambiguities are not led astray by their first
+// codes.
+TEST(Differential, FirstCodesAfterAnOutageDoNotMislead) {
+    Pair pair(1, {Constellation::gps});
+    pair.after(20);
+    pair.after(10, [](std::vector<Observation>& own, std::vector<Observation>&) { own.clear(); });
+    double age = 0;
+    const auto young = [&](std::vector<Observation>& own, std::vector<Observation>&) {
+        RandomStream off(1, "first codes");
+        for (Observation& o : own) {
+            o.pseudorange = *o.pseudorange + Metres(6 * off.normal() / std::sqrt(1 + age));
+            o.lock_time = Seconds(age);
+        }
+        ++age;
+    };
+    EXPECT_EQ(pair.after(10, young).type, FixType::rtk_fixed);
+}
+
 // A base whose antenna is moved at once, and does not say so: its phases jump by metres and go on.
 TEST(Differential, ABaseThatHasBeenMovedMovesTheRover) {
     Pair pair(2);

@@ -247,6 +247,26 @@ TEST(ToldAccuracy, GrowsWithThePoorGeometryOfCarrierPhases) {
     EXPECT_NEAR(told(poor, DifferentialKind::none).horizontal.value(), std::sqrt(2.0), 1e-12);
 }
 
+// Errors of ranges reach the place by the DOP, at a distance from the reference as at none.
+TEST(ToldAccuracy, GrowsWithTheDopAndTheDistance) {
+    const CarrierParameters parameters;
+    Dop good, poor;
+    good.hdop = 0.5, good.vdop = 0.9;
+    poor.hdop = 2, poor.vdop = 3.6;
+    const auto told = [&](const Dop& dop, double km) {
+        const ReferenceSpacing spacing{Metres(1000 * km), Seconds(0)};
+        return told_accuracy(Matrix3d::Zero(), dop, parameters.told_floor, spacing, parameters);
+    };
+    for (const double km : {0.0, 10.0, 100.0}) {
+        EXPECT_NEAR(told(poor, km).horizontal.value(), 4 * told(good, km).horizontal.value(), 1e-12);
+        EXPECT_NEAR(told(poor, km).vertical.value(), 4 * told(good, km).vertical.value(), 1e-12);
+    }
+    EXPECT_NEAR(
+        told(good, 100).horizontal.value() / told(good, 0).horizontal.value(),
+        std::hypot(1e5 * parameters.told_per_length, parameters.told_floor.value()) / parameters.told_floor.value(),
+        1e-9);
+}
+
 TEST(ExpectedError, OfTimeAloneIsInTheClock) {
     const SinglePoint point = CorrectedEpoch().timed();
     const ExpectedError expected = expected_error(point, AccuracyParameters());

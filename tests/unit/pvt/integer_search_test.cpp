@@ -80,6 +80,22 @@ TEST(IntegerSearch, TellsHowSureRoundingIs) {
     EXPECT_NEAR(success(0.25), 0.9545, 1e-4);
 }
 
+// Of variances that are too small or too large, the best one's own misfit is the measure, down to a third.
+TEST(IntegerSearch, MeasuresTheSecondByTheMisfitOfTheBest) {
+    IntegerCandidates candidates;
+    candidates.best = VectorXd::Zero(8);
+    candidates.second_norm = 40;
+    candidates.best_norm = 10;  // 2 for each of five
+    EXPECT_DOUBLE_EQ(candidates.gap(), 15);
+    candidates.best_norm = 2.5;
+    EXPECT_DOUBLE_EQ(candidates.gap(), 75);
+    candidates.best_norm = 0;
+    EXPECT_DOUBLE_EQ(candidates.gap(), 40 / 0.35);
+    candidates.best = VectorXd::Zero(3);  // which the place takes
+    candidates.best_norm = 10;
+    EXPECT_DOUBLE_EQ(candidates.gap(), 3);
+}
+
 TEST(IntegerSearch, RefusesWhatIsNoCovariance) {
     EXPECT_FALSE(search_integers(VectorXd(), MatrixXd()));
     EXPECT_FALSE(search_integers(VectorXd::Zero(2), MatrixXd::Zero(2, 2)));

@@ -67,7 +67,7 @@ private:
     [[nodiscard]] std::vector<AmbiguityPair> pairs(double most_variance, Seconds tracked) const;
     [[nodiscard]] double variance_of_best(double share) const;
     [[nodiscard]] Eigen::MatrixXd echoes(const std::vector<AmbiguityPair>& pairs) const;
-    std::optional<FixedOffset> fix(const std::vector<AmbiguityPair>& pairs, double least_success);
+    std::optional<FixedOffset> fix(const std::vector<AmbiguityPair>& pairs);
     void hold(const std::vector<AmbiguityPair>& pairs, const Eigen::VectorXd& whole);
 
     CarrierParameters p_;
