@@ -157,17 +157,19 @@ def run(program, setup, seed, folder):
     return results
 
 
-def first_fix(epochs, after_s):
-    """Seconds."""
-    return next((f"{epoch.at_s - after_s:g}" for epoch in epochs if epoch.fixed and epoch.at_s >= after_s), "–")
+def first_fixes(series, after_s):
+    """The median and the last of some runs, seconds; – for never."""
+    waits = sorted(next((epoch.at_s - after_s for epoch in epochs if epoch.fixed and epoch.at_s >= after_s), math.inf)
+                   for epochs in series)
+    return " … ".join("–" if math.isinf(wait) else f"{wait:g}" for wait in (waits[len(waits) // 2], waits[-1]))
 
 
 def summary(series, setup):
     """Share fixed, first fixes, those after the outage, error, told, within, wrong, of the epochs of some runs."""
     every = [epoch for epochs in series for epoch in epochs]
     fixed = [epoch for epoch in every if epoch.fixed]
-    firsts = " ".join(first_fix(epochs, CORRECTIONS_FROM_S) for epochs in series)
-    again = " ".join(first_fix(epochs, setup.outage_at_s + OUTAGE_S) for epochs in series)
+    firsts = first_fixes(series, CORRECTIONS_FROM_S)
+    again = first_fixes(series, setup.outage_at_s + OUTAGE_S)
     if not fixed:
         return 0.0, firsts, again, None
     errors = sorted(epoch.level_m for epoch in fixed)
