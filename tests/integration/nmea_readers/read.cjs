@@ -13,9 +13,10 @@ const SignalK = (() => { const module = load('@signalk/nmea0183-signalk'); retur
 const readers = {
   gps (line) {
     const read = GPS.Parse(line)
+    if (read === false && !(line.slice(3).split(',')[0] in GPS.parsers)) return 'unknown'
     if (read === false) throw new Error('no sentence')
     if (read.valid === false) throw new Error('invalid checksum')
-    return read.type === undefined ? 'unknown' : { type: read.type, lat: read.lat, lon: read.lon, quality: read.quality, heading: read.heading }
+    return { type: read.type, lat: read.lat, lon: read.lon, quality: read.quality, heading: read.heading }
   },
   'nmea-simple' (line) {
     try {
