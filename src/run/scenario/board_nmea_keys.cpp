@@ -53,7 +53,8 @@ void read_own_line(TableReader& table, std::vector<firmware::OwnLine>& lines) {
     table.text("text", line.text);
     table.integer("every", line.every_epochs, {1, 255});
     if (const auto index = table.choice("after", sentence_names())) line.after = static_cast<NmeaSentence>(*index);
-    if (!has_text && !table.recording()) return table.mistake_here("has no text");
+    if (table.recording()) return;
+    if (!has_text) return table.mistake_here("has no text");
     if (const auto mistake = firmware::mistake_of_own_line(line.text)) table.mistake("text", *mistake);
     lines.push_back(std::move(line));
 }

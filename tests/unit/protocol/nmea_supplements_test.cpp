@@ -65,7 +65,9 @@ TEST(Supplements, TurnCoursesByTheMagneticVariation) {
     const NmeaFormat west{.version = NmeaVersion::v2_3, .magnetic_fields = true, .magnetic_variation_deg = -3.5};
     Vtg vtg{"GP", Angle::degrees(358), MetresPerSecond(0), NmeaMode::autonomous};
     EXPECT_THAT(encode(vtg, west), StartsWith("$GPVTG,358.00,T,1.50,M,"));
-    EXPECT_THAT(encode(Rmc{.talker = "GP", .mode = NmeaMode::none}, west), HasSubstr(",3.5,W,N*"));
+    Rmc rmc;
+    rmc.mode = NmeaMode::none;
+    EXPECT_THAT(encode(rmc, west), HasSubstr(",3.5,W,N*"));
     vtg.course.reset();
     EXPECT_THAT(encode(vtg, west), StartsWith("$GPVTG,,T,,M,"));
 }
