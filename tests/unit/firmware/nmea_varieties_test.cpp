@@ -91,7 +91,7 @@ TEST(NmeaVarieties, TellTheGeoidOrNot) {
 TEST(NmeaVarieties, TellHeadingsOfAPairBeforeAllOthers) {
     SampleReceiver receiver = varied([](NmeaStyle& s) { s.heading = HeadingSource::course; });
     EXPECT_THAT(receiver.line(ths), StartsWith("$GNTHS,77.78,E*"));
-    receiver.state.epoch.relative = RelativePosition{.north_m = 0, .east_m = -1};
+    receiver.state.epoch.relative.emplace().east_m = -1;
     EXPECT_THAT(receiver.line(ths), StartsWith("$GNTHS,270.00,A*"));
     EXPECT_THAT(receiver.line(hdt), StartsWith("$GNHDT,270.00,T*"));
     receiver.state.epoch.relative->base_moves = false;
