@@ -4,7 +4,6 @@ import csv
 import json
 import os
 import pathlib
-import shutil
 import socket
 import struct
 import subprocess
@@ -12,7 +11,7 @@ import time
 import unittest
 
 from other_protocols_test import GpsInput, Msp, mavlink_messages, msp_messages
-from session import ROOT, Emulator, open_folder, skyloop
+from session import Emulator, npm_packages, open_folder, skyloop
 
 START = "2024-03-05T12:00:00Z"
 CIRCLE = """[run]
@@ -57,19 +56,9 @@ def read_all(connection):
 
 
 def node_folder():
-    """Where node-mavlink is; fetched there when it is not. None where that cannot be."""
-    here = pathlib.Path(__file__).resolve().parent / "mavlink_decoder"
-    folder = pathlib.Path(os.environ.get("SKYLOOP_NODE_FOLDER", ROOT / "build/dev/tests/mavlink_decoder"))
-    if not shutil.which("node") or not shutil.which("npm"):
-        return None, "there is no node or npm; apt-get install nodejs npm"
-    folder.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(here / "package.json", folder / "package.json")
-    if not (folder / "node_modules/node-mavlink/package.json").exists():
-        done = subprocess.run(["npm", "install", "--prefer-offline", "--no-audit", "--no-fund", "--no-package-lock",
-                               "--ignore-scripts"], cwd=folder, capture_output=True, text=True, timeout=90)
-        if done.returncode != 0:
-            return None, f"npm cannot install node-mavlink: {done.stderr.splitlines()[-1:]}"
-    return folder, str(here / "decode.cjs")
+    """Where node-mavlink is, and the decoder that takes it; None and why there is none."""
+    folder, lack = npm_packages("mavlink_decoder", "node-mavlink")
+    return folder, lack or str(pathlib.Path(__file__).resolve().parent / "mavlink_decoder/decode.cjs")
 
 
 class OutputsTest(unittest.TestCase):

@@ -3,6 +3,7 @@ import os
 import pathlib
 import re
 import select
+import shutil
 import signal
 import subprocess
 import sys
@@ -54,6 +55,23 @@ def septentrio_that_sends(folder, *blocks):
     path = pathlib.Path(folder, "board.toml")
     path.write_text(board + f"\n[sbf]\nblocks = {list(blocks)}\n", encoding="utf-8")
     return path
+
+
+def npm_packages(folder, needed, environment="SKYLOOP_NODE_FOLDER"):
+    """Where the packages of FOLDER's package.json are, fetched there when `needed`, one of them, is not; and why they cannot
+    be, with None for a folder. `environment` names the variable that says where."""
+    here = pathlib.Path(__file__).resolve().parent / folder
+    where = pathlib.Path(os.environ.get(environment, ROOT / "build/dev/tests" / folder))
+    if not shutil.which("node") or not shutil.which("npm"):
+        return None, "there is no node or npm; apt-get install nodejs npm"
+    where.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(here / "package.json", where / "package.json")
+    if not (where / "node_modules" / needed / "package.json").exists():
+        done = subprocess.run(["npm", "install", "--prefer-offline", "--no-audit", "--no-fund", "--no-package-lock",
+                               "--ignore-scripts"], cwd=where, capture_output=True, text=True, timeout=90)
+        if done.returncode != 0:
+            return None, f"npm cannot install {needed}: {done.stderr.splitlines()[-1:]}"
+    return where, ""
 
 
 class Emulator:

@@ -25,12 +25,14 @@ struct FirmwareList;
 
 /// Sentences that a receiver can send periodically, in the order in which they leave within one epoch unless the board
 /// gives another (`BoardProfile::messages`).
-enum class NmeaSentence { rmc, vtg, gga, gns, gsa, gsv, gll, gst, zda, gbs, dtm, grs, vlw, ths };
-inline constexpr std::string_view nmea_sentence_names[] = {"RMC", "VTG", "GGA", "GNS", "GSA", "GSV", "GLL",
-                                                           "GST", "ZDA", "GBS", "DTM", "GRS", "VLW", "THS"};
-/// Their ids in class F0, as u-blox's CFG-MSG numbers them.
-inline constexpr std::uint8_t nmea_sentence_ids[] = {0x04, 0x05, 0x00, 0x0D, 0x02, 0x03, 0x01,
-                                                     0x07, 0x08, 0x09, 0x0A, 0x06, 0x0F, 0x0E};
+enum class NmeaSentence { rmc, vtg, gga, gns, gsa, gsv, gll, gst, zda, gbs, dtm, grs, vlw, ths, hdt, hdg, rot };
+inline constexpr std::string_view nmea_sentence_names[] = {"RMC", "VTG", "GGA", "GNS", "GSA", "GSV",
+                                                           "GLL", "GST", "ZDA", "GBS", "DTM", "GRS",
+                                                           "VLW", "THS", "HDT", "HDG", "ROT"};
+/// Their ids in class F0, as u-blox's CFG-MSG numbers them; those of HDT, HDG and ROT, which no u-blox has, are our
+/// own.
+inline constexpr std::uint8_t nmea_sentence_ids[] = {0x04, 0x05, 0x00, 0x0D, 0x02, 0x03, 0x01, 0x07, 0x08,
+                                                     0x09, 0x0A, 0x06, 0x0F, 0x0E, 0x30, 0x31, 0x32};
 
 /// A sentence and every how many epochs it is sent.
 struct SentenceRate {
@@ -152,6 +154,39 @@ struct GnssBlock {
     std::uint32_t flags = 0;  ///< as on the wire; bit 0 is replaced by what is configured
 };
 
+/// What HDT, THS, HDG and ROT tell where no pair of antennas measures a heading.
+enum class HeadingSource {
+    antennas,  ///< nothing
+    course,    ///< the course over ground
+    attitude   ///< what a compass beside the receiver says of the vehicle
+};
+/// What sentences call a valid fix.
+enum class ToldQuality {
+    solved,    ///< as it was solved
+    precise,   ///< one by satellites alone PPS: GGA 3, mode P
+    manual,    ///< entered by hand: 7, M
+    simulator  ///< simulated: 8, S
+};
+/// How satellites in use are told.
+enum class GsaStyle {
+    by_system,  ///< a sentence for each system, by the main talker
+    by_talker,  ///< the same by each system's own
+    one         ///< one sentence for all
+};
+/// What GGA and GNS say of the geoid.
+enum class ToldGeoid {
+    separation,  ///< its separation; the altitude is above the sea
+    zero,        ///< 0; the altitude is above the ellipsoid
+    nothing      ///< an empty field, the same
+};
+
+/// A sentence of the maker's own that comes with every so many epochs (firmware/sentences/own_lines.hpp).
+struct OwnLine {
+    std::string text;  ///< from "$" on, without checksum; {names} stand for values
+    int every_epochs = 1;
+    std::optional<NmeaSentence> after{};  ///< it follows the last of these of the epoch; nothing: at its end
+};
+
 /// How fields of sentences look, where makers differ; the defaults are u-blox's (RECEIVER.md 5.3, 5.8 to 5.10).
 struct NmeaStyle {
     int speed_decimals = 3;                                 ///< of RMC (knots) and VTG (knots, km/h)
@@ -161,8 +196,18 @@ struct NmeaStyle {
     int vtg_speed_decimals = -1, vtg_course_decimals = -1;  ///< of VTG alone; -1: as in RMC
     int altitude_decimals = 1;                              ///< of GGA and GNS
     int dop_decimals = 2;
-    double unknown_dop = 99.99;    ///< of what was not computed
-    bool magnetic_fields = false;  ///< RMC has a magnetic variation, 0.0,E, and VTG the magnetic course, the true one
+    double unknown_dop = 99.99;         ///< of what was not computed
+    bool magnetic_fields = false;       ///< RMC has the magnetic variation, and VTG the magnetic course
+    double magnetic_variation_deg = 0;  ///< that it believes, east positive; of HDG too
+    int heading_decimals = 2;           ///< of HDT, THS and HDG
+    HeadingSource heading = HeadingSource::antennas;
+    std::string heading_talker;  ///< of HDT, THS, HDG and ROT; empty: the main one
+    ToldQuality quality = ToldQuality::solved;
+    bool simulated_is_valid = false;  ///< RMC and GLL say A with the modes M and S
+    GsaStyle gsa = GsaStyle::by_system;
+    ToldGeoid geoid = ToldGeoid::separation;
+    std::map<UbxMessageId, int> late;  ///< sentences that tell the epoch so many before
+    std::vector<OwnLine> lines;
     std::string rmc_status = "V";  ///< the last letter of a valid RMC since 4.10, its navigational status
     bool gsa_manual = false;       ///< GSA says M whatever chooses between 2D and 3D
     /// Lists have what is tracked alone: GSV no satellites without a signal, GSA no systems without one in use. Without

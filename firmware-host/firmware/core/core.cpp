@@ -237,12 +237,26 @@ void Receiver::Core::on_epoch(const Epoch& epoch, const ReportEdit& edit) {
     follow_power();
     parts_.maker->restrict(*state);
     if (edit) edit(*state);
+    remember_for_late_sentences(*state);
     parts_.reported = state;
     ++counters_.epochs;
     if (!settings_.navigating) return;
     const GpsTime burst = reporter_.plan(state, time);
     if (state->reports > 0 && !parts_.faults.mute) report_time_ = burst;
     if (off) sleep_.plan({.until = off->until, .wakes = wake_by_every_pin | wake_by_usb, .saves_power = true}, burst);
+}
+
+// A board without late sentences keeps nothing.
+void Receiver::Core::remember_for_late_sentences(NavigationState& state) {
+    std::size_t farthest = 0;
+    for (const auto& [message, epochs] : parts_.board.style.late)
+        farthest = std::max(farthest, static_cast<std::size_t>(epochs));
+    if (farthest == 0) return;
+    if (state.epoch_index == 0) earlier_.clear();
+    const auto copy = std::make_shared<NavigationState>(state);
+    state.earlier = earlier_;
+    earlier_.insert(earlier_.begin(), copy);
+    earlier_.resize(std::min(earlier_.size(), farthest));
 }
 
 void Receiver::Core::reset_odometer() {

@@ -40,6 +40,7 @@ public:
 private:
     // Input.
     bool receive(PortUnit& unit, const StreamPiece& piece, GpsTime now);
+    void remember_for_late_sentences(NavigationState& state);
     [[nodiscard]] bool accepts(PortId port, StreamKind kind) const;
     void report_corrections(const CorrectionAnswer& answer, GpsTime now);
     void carry_out(PortUnit& unit, CommandOutcome outcome, GpsTime now);
@@ -84,12 +85,13 @@ private:
     SleepControl sleep_;
     ReceiverSettings settings_;  ///< as configured, with what a run of the receiver adds: restarts, rests
     ReceiverCounters counters_;
-    std::uint64_t revision_ = 0;          ///< of the settings, as adopted
-    GpsTime busy_until_{};                ///< commands are worked off one by one
-    GpsTime deaf_until_{};                ///< the receiver boots: input is lost
-    GpsTime silent_until_{};              ///< no epoch is reported
-    std::optional<GpsTime> report_time_;  ///< of the last epoch; nothing: it is not reported
-    GpsTime last_answer_{};               ///< planned; later ones do not overtake it
+    std::uint64_t revision_ = 0;                                   ///< of the settings, as adopted
+    GpsTime busy_until_{};                                         ///< commands are worked off one by one
+    GpsTime deaf_until_{};                                         ///< the receiver boots: input is lost
+    GpsTime silent_until_{};                                       ///< no epoch is reported
+    std::optional<GpsTime> report_time_;                           ///< of the last epoch; nothing: it is not reported
+    GpsTime last_answer_{};                                        ///< planned; later ones do not overtake it
+    std::vector<std::shared_ptr<const NavigationState>> earlier_;  ///< NavigationState::earlier of the next one
 };
 
 }  // namespace skyloop::firmware

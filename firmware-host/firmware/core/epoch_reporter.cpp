@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "firmware/sentences/own_lines.hpp"
+
 namespace skyloop::firmware {
 namespace {
 
@@ -48,7 +50,8 @@ void EpochReporter::send(const NavigationState& state, GpsTime now) {
     parts_.look_at_ports();
     EpochMessages made(parts_.context(PortId::uart1, state));
     for (PortUnit& unit : parts_.units) {
-        const DueMessages due = parts_.maker->due(unit.id, made, parts_.faults);
+        DueMessages due = parts_.maker->due(unit.id, made, parts_.faults);
+        add_own_lines(due, made, unit.id);
         report_overflow(unit, now);
         parts_.send_in_turn(unit.id, due.frames, now);
     }

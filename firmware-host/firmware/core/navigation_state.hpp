@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "base/core/units.hpp"
 #include "base/geo/frames.hpp"
@@ -112,6 +114,7 @@ struct NavigationState {
     bool position_held = false;   ///< by static hold
     std::optional<Angle> course;  ///< frozen at low speed; nothing before the first
     bool course_is_frozen = false;
+    std::optional<double> turn_rate_dpm{};  ///< of the heading that sentences tell, degrees per minute to starboard
     double odometer_m = 0, odometer_total_m = 0, odometer_deviation_m = 0;
     std::uint64_t epoch_index = 0;       ///< since the last start
     std::optional<BaseSurvey> survey{};  ///< with CFG-TMODE-MODE 1
@@ -122,6 +125,8 @@ struct NavigationState {
     Seconds week_lag{0};      ///< week numbers change so much after their times of week begin anew; below 0 before
     int reports = 1;          ///< how many times its messages are sent
     Seconds report_delay{0};  ///< more until they are; those of later epochs may overtake them
+    /// The states before, the last one first: as many as the board's late sentences reach back. They have none.
+    std::vector<std::shared_ptr<const NavigationState>> earlier{};
 };
 
 /// Whether accuracies, velocity and clock in the fix are of a solution, if an old one.

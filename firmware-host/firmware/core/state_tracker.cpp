@@ -138,6 +138,7 @@ const NavigationState& StateTracker::update(const Epoch& epoch, const ReceiverCo
     }
     learn_time();
     freeze_course();
+    state_.turn_rate_dpm = turn_rate_.follow(told_heading(state_, board_.style.heading), fix.time);
     if (config.counts_distance) count_distance(before);
     monitor(config);
     if (fix.has_position()) last_fix_ = fix;

@@ -7,6 +7,7 @@
 
 #include "firmware/core/monitor_drift.hpp"
 #include "firmware/core/navigation_state.hpp"
+#include "firmware/core/told_heading.hpp"
 #include "world/flow/receiver_settings.hpp"
 
 namespace skyloop::firmware {
@@ -92,6 +93,7 @@ private:
     bool last_good_was_ok_ = false;     ///< within limits, DOP and accuracy masks
     Fix last_fix_;
     std::optional<Fix> held_;  ///< the fix of static hold
+    TurnRate turn_rate_;
     int epochs_beyond_limits_ = 0;
 };
 

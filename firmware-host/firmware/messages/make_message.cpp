@@ -29,8 +29,11 @@ std::vector<Bytes> make_message(UbxMessageId message, const ReportContext& conte
         case 0x0D:
             return make_navigation_message(message, context);
         case 0xF0:
-        case 0xF1:
-            return make_nmea_message(message, nmea_report(context));
+        case 0xF1: {
+            const NavigationState* told = told_state(message, context);
+            if (told == nullptr) return {};
+            return make_nmea_message(message, nmea_report({context.board, context.config, *told, {}, context.port}));
+        }
         case 0xF5:
             return make_rtcm_message(message, context);
         default:
@@ -51,7 +54,8 @@ const std::vector<Bytes>& EpochMessages::of(UbxMessageId message, PortId port,
     if (!is_new && !differs_by_port(message)) return entry->second;
     context_.port = port;
     context_.following = following;
-    if (message.message_class != class_nmea && message.message_class != class_pubx)
+    const bool sentence = message.message_class == class_nmea || message.message_class == class_pubx;
+    if (!sentence || told_state(message, context_) != &context_.state)
         return entry->second = make_message(message, context_);
     if (!report_) report_.emplace(nmea_report(context_));
     return entry->second = make_nmea_message(message, *report_);

@@ -6,6 +6,7 @@
 
 #include "firmware/core/port_id.hpp"
 #include "firmware/core/solution_covariance.hpp"
+#include "firmware/core/told_heading.hpp"
 #include "firmware/messages/field_values.hpp"
 #include "firmware/messages/make_message.hpp"
 #include "firmware/sentences/nmea_report.hpp"
@@ -19,8 +20,11 @@ namespace {
 template <class Message>
 void add_height_and_corrections(Message& m, const NmeaReport& r) {
     if (r.position) {
-        m.altitude = above_sea_level(r.fix().position.height, r.fix().geoid_undulation).above_sea_level;
-        m.geoid_separation = r.fix().geoid_undulation;
+        const ToldGeoid told = r.context.board.style.geoid;
+        const bool is_known = told == ToldGeoid::separation;
+        const Metres geoid = is_known ? r.fix().geoid_undulation : Metres(0);
+        m.altitude = above_sea_level(r.fix().position.height, geoid).above_sea_level;
+        if (told != ToldGeoid::nothing) m.geoid_separation = geoid;
     }
     if (r.course_mode != NmeaMode::differential) return;
     const CorrectionStatus& corrections = r.context.state.corrections;
@@ -115,13 +119,40 @@ Dtm dtm(const NmeaReport& r) {
     return m;
 }
 
-Ths ths(const NmeaReport& r) {
-    const auto& relative = r.context.state.epoch.relative;
-    if (!relative || !relative->base_moves) return {r.talker, std::nullopt, 'V'};
-    return {r.talker, Angle::radians(std::atan2(relative->east_m, relative->north_m)), 'A'};
+std::string heading_talker(const NmeaReport& r) {
+    const std::string& own = r.context.board.style.heading_talker;
+    return own.empty() ? r.talker : own;
 }
 
-Rmc rmc(const NmeaReport& r) { return {r.talker, r.time, r.valid, r.position, r.speed, r.course, r.date, r.mode}; }
+std::optional<ToldHeading> heading_of(const NmeaReport& r) {
+    return told_heading(r.context.state, r.context.board.style.heading);
+}
+
+Ths ths(const NmeaReport& r) {
+    const auto told = heading_of(r);
+    if (!told) return {heading_talker(r), std::nullopt, 'V'};
+    const bool estimated = told->from == HeadingSource::course;
+    const bool invented = r.mode == NmeaMode::manual || r.mode == NmeaMode::simulator;
+    return {heading_talker(r), told->heading, invented ? static_cast<char>(r.mode) : estimated ? 'E' : 'A'};
+}
+
+Hdt hdt(const NmeaReport& r) {
+    const auto told = heading_of(r);
+    return {heading_talker(r), told ? std::optional(told->heading) : std::nullopt};
+}
+
+Hdg hdg(const NmeaReport& r) {
+    const auto told = heading_of(r);
+    const Angle variation = Angle::degrees(r.format.magnetic_variation_deg);
+    return {heading_talker(r), told ? std::optional(told->heading - variation) : std::nullopt, variation};
+}
+
+Rot rot(const NmeaReport& r) {
+    const auto rate = heading_of(r) ? r.context.state.turn_rate_dpm : std::nullopt;
+    return {heading_talker(r), rate, rate.has_value()};
+}
+
+Rmc rmc(const NmeaReport& r) { return {r.talker, r.time, r.status, r.position, r.speed, r.course, r.date, r.mode}; }
 
 // Receivers whose lists have what is tracked alone say GP while there is nothing (capture of a UM980,
 // jclark/satpulse, gps/testdata/packets/unicore/UM980/nmea-default.jsonl).
@@ -145,7 +176,7 @@ std::vector<NmeaMessage> messages_of(NmeaSentence sentence, const NmeaReport& r)
         case NmeaSentence::gsv:
             return all(gsv_messages(r));
         case NmeaSentence::gll:
-            return {Gll{r.talker, r.position, r.time, r.valid, r.course_mode}};
+            return {Gll{r.talker, r.position, r.time, r.status, r.course_mode}};
         case NmeaSentence::gst:
             return {gst(r)};
         case NmeaSentence::zda:
@@ -160,31 +191,25 @@ std::vector<NmeaMessage> messages_of(NmeaSentence sentence, const NmeaReport& r)
             return {vlw(r)};
         case NmeaSentence::ths:
             return {ths(r)};
+        case NmeaSentence::hdt:
+            return {hdt(r)};
+        case NmeaSentence::hdg:
+            return {hdg(r)};
+        case NmeaSentence::rot:
+            return {rot(r)};
     }
     return {};
 }
-
-struct SentenceId {
-    std::uint8_t id;
-    NmeaSentence sentence;
-};
-// As CFG-MSG numbers them (u-blox M8 interface description, 31.1.1).
-constexpr SentenceId sentence_ids[] = {{0x00, NmeaSentence::gga}, {0x01, NmeaSentence::gll}, {0x02, NmeaSentence::gsa},
-                                       {0x03, NmeaSentence::gsv}, {0x04, NmeaSentence::rmc}, {0x05, NmeaSentence::vtg},
-                                       {0x06, NmeaSentence::grs}, {0x07, NmeaSentence::gst}, {0x08, NmeaSentence::zda},
-                                       {0x09, NmeaSentence::gbs}, {0x0A, NmeaSentence::dtm}, {0x0D, NmeaSentence::gns},
-                                       {0x0E, NmeaSentence::ths}, {0x0F, NmeaSentence::vlw}};
 
 }  // namespace
 
 std::vector<Bytes> make_nmea_message(UbxMessageId message, const NmeaReport& report) {
     if (message.message_class == class_pubx) return pubx_sentences(message.id, report);
     if (message.message_class != class_nmea) return {};
-    const auto* known = std::find_if(std::begin(sentence_ids), std::end(sentence_ids),
-                                     [&](const SentenceId& s) { return s.id == message.id; });
-    if (known == std::end(sentence_ids)) return {};
+    const auto* const known = std::ranges::find(nmea_sentence_ids, message.id);
+    if (known == std::end(nmea_sentence_ids)) return {};
     std::vector<Bytes> out;
-    for (const NmeaMessage& m : messages_of(known->sentence, report))
+    for (const NmeaMessage& m : messages_of(static_cast<NmeaSentence>(known - std::begin(nmea_sentence_ids)), report))
         out.push_back(to_bytes(encode(m, report.format)));
     return out;
 }

@@ -38,6 +38,24 @@ SolutionFlags solution_flags(FixType type) {
     return {0, 1, none, none};
 }
 
+// What the board calls it instead. Mode P came with version 4.0 (gpsd, www/NMEA.adoc, FAA Mode Indicator).
+SolutionFlags as_told(SolutionFlags flags, ToldQuality told, NmeaVersion version) {
+    constexpr int pps = 3, entered = 7, simulated = 8, autonomous = 1;
+    const NmeaMode precise = version >= NmeaVersion::v4_0 ? NmeaMode::precise : NmeaMode::autonomous;
+    switch (told) {
+        case ToldQuality::solved:
+            return flags;
+        case ToldQuality::precise:
+            if (flags.quality != autonomous) return flags;
+            return {pps, flags.fix_mode, precise, precise};
+        case ToldQuality::manual:
+            return {entered, flags.fix_mode, NmeaMode::manual, NmeaMode::manual};
+        case ToldQuality::simulator:
+            return {simulated, flags.fix_mode, NmeaMode::simulator, NmeaMode::simulator};
+    }
+    return flags;
+}
+
 // Beyond the user's limits only dead reckoning still shows (RECEIVER.md 5.4, second row).
 SolutionFlags flags_beyond_limits(FixType type) {
     if (type == FixType::dead_reckoning) return {6, 2, NmeaMode::none, NmeaMode::none};
@@ -165,6 +183,8 @@ NmeaFormat nmea_format(const BoardProfile& board, const ReceiverConfig& config) 
                       .vtg_speed_decimals = board.style.vtg_speed_decimals,
                       .vtg_course_decimals = board.style.vtg_course_decimals,
                       .magnetic_fields = board.style.magnetic_fields,
+                      .magnetic_variation_deg = board.style.magnetic_variation_deg,
+                      .heading_decimals = board.style.heading_decimals,
                       .rmc_status = board.style.rmc_status.empty() ? 'V' : board.style.rmc_status.front(),
                       .empty_gsv_fields = board.style.tracked_only,
                       .dop_decimals = board.style.dop_decimals,
@@ -186,6 +206,13 @@ UtcTime reported_utc(const ReportContext& context) {
     return rounded_utc(now.time, context.board.time_decimals, counted_leap_seconds(now));
 }
 
+const NavigationState* told_state(UbxMessageId message, const ReportContext& context) {
+    const auto late = context.board.style.late.find(message);
+    if (late == context.board.style.late.end()) return &context.state;
+    const auto epochs = static_cast<std::size_t>(late->second);
+    return epochs <= context.state.earlier.size() ? context.state.earlier[epochs - 1].get() : nullptr;
+}
+
 NmeaReport nmea_report(const ReportContext& context) {
     const auto& [board, config, state, ports, port, following] = context;
     NmeaReport r{.context = context,
@@ -195,7 +222,12 @@ NmeaReport nmea_report(const ReportContext& context) {
     const FixType type = r.fix().type;
     r.solved = r.fix().has_position();
     r.valid = r.solved && state.fix_ok;
-    const SolutionFlags flags = r.valid ? solution_flags(type) : flags_beyond_limits(type);
+    const ToldQuality told = board.style.quality;
+    const SolutionFlags flags =
+        r.valid ? as_told(solution_flags(type), told, r.format.version) : flags_beyond_limits(type);
+    // Status A is for the modes of a receiver that measures (NMEA 0183, RMC).
+    const bool measured = flags.mode != NmeaMode::manual && flags.mode != NmeaMode::simulator;
+    r.status = r.valid && (measured || board.style.simulated_is_valid);
     r.quality = flags.quality;
     r.fix_mode = flags.fix_mode;
     r.mode = flags.mode;

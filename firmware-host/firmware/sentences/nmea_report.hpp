@@ -26,9 +26,10 @@ struct NmeaReport {
     std::string talker;  ///< of all sentences but GSV
 
     // RECEIVER.md 5.4
-    bool valid = false;  ///< status A
-    int quality = 0;     ///< of GGA
-    int fix_mode = 1;    ///< of GSA
+    bool valid = false;   ///< there is a fix within the limits
+    bool status = false;  ///< A of RMC and GLL
+    int quality = 0;      ///< of GGA
+    int fix_mode = 1;     ///< of GSA
     NmeaMode mode = NmeaMode::none;
     NmeaMode course_mode = NmeaMode::none;  ///< of GLL and VTG, which know no RTK
     bool solved = false;                    ///< there is a solution, if one beyond the user's limits
@@ -52,6 +53,9 @@ struct NmeaReport {
 };
 
 NmeaReport nmea_report(const ReportContext& context);
+/// The state that a sentence tells of: the context's, or one of before where the board is late with it. Null: there is
+/// none yet.
+const NavigationState* told_state(UbxMessageId message, const ReportContext& context);
 /// nmea_signal_id() of what the receiver measures: where it takes B1C, that is what it calls BeiDou's first signal.
 int tracked_signal_id(const NmeaReport& report, Constellation constellation, Signal signal);
 /// DOPs of position as sentences show them: 99.99 where none was computed; nothing where the board leaves them out

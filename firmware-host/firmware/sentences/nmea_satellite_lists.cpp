@@ -130,6 +130,26 @@ std::vector<NmeaGroup> beidou_before_galileo(std::vector<NmeaGroup> groups) {
     return groups;
 }
 
+std::vector<int> used_numbers(const NmeaReport& r, const NmeaGroup& group) {
+    std::vector<int> numbers;
+    for (const SatelliteStatus& s : r.used) {
+        const auto number = nmea_satellite_number(s.id, r.format.version, r.numbering);
+        if (number && r.belongs(s.id, group)) numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+// One sentence has one system's id: none where its satellites are of several.
+Gsa gsa_of_all(const NmeaReport& r, Gsa m) {
+    for (const NmeaGroup& group : r.groups) {
+        const std::vector<int> numbers = used_numbers(r, group);
+        if (numbers.empty()) continue;
+        m.system_id = m.satellites.empty() ? std::optional(group.system.system_id) : std::nullopt;
+        m.satellites.insert(m.satellites.end(), numbers.begin(), numbers.end());
+    }
+    return m;
+}
+
 }  // namespace
 
 std::vector<Gsv> gsv_messages(const NmeaReport& r) {
@@ -159,14 +179,12 @@ std::vector<Gsa> gsa_messages(const NmeaReport& r) {
         m.hdop = dops->hdop;
         m.vdop = dops->vdop;
     }
+    if (style.gsa == GsaStyle::one) return {gsa_of_all(r, m)};
     std::vector<Gsa> out;
     for (const NmeaGroup& group : r.groups) {
-        m.satellites.clear();
+        m.satellites = used_numbers(r, group);
         m.system_id = group.system.system_id;
-        for (const SatelliteStatus& s : r.used) {
-            const auto number = nmea_satellite_number(s.id, r.format.version, r.numbering);
-            if (number && r.belongs(s.id, group)) m.satellites.push_back(*number);
-        }
+        if (style.gsa == GsaStyle::by_talker) m.talker = group.talker;
         if (!style.tracked_only || !m.satellites.empty()) out.push_back(m);
     }
     if (!out.empty() || !style.tracked_only) return out;

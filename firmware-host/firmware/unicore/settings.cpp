@@ -18,8 +18,9 @@ namespace {
 
 // In the order in which they leave (capture nmea-default.jsonl of jclark/satpulse for the first six). The last ones are
 // those that any board can be given.
-constexpr std::array<std::string_view, 14> unicore_sentences{"RMC", "GGA", "GLL", "GSA", "GSV", "VTG", "GST",
-                                                             "ZDA", "THS", "GNS", "GBS", "GRS", "DTM", "VLW"};
+constexpr std::array<std::string_view, 17> unicore_sentences{"RMC", "GGA", "GLL", "GSA", "GSV", "VTG",
+                                                             "GST", "ZDA", "THS", "HDT", "ROT", "GNS",
+                                                             "GBS", "GRS", "DTM", "VLW", "HDG"};
 struct OwnLog {
     std::string_view asked, name;
     bool text, binary, heading;

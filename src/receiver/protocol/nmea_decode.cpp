@@ -218,6 +218,24 @@ void read(Hdt& m, FieldReader& r) {
     r.either(1, "T", "T");
 }
 
+// An amount and a side, negative for the west.
+std::optional<Angle> sided_angle(FieldReader& r, std::size_t i) {
+    const auto amount = r.degrees(i, "an angle");
+    if (!amount) return std::nullopt;
+    return r.either(i + 1, "EW", "E or W") ? amount : std::optional(-*amount);
+}
+
+void read(Hdg& m, FieldReader& r) {
+    const auto sensor = r.degrees(0, "a heading"), deviation = sided_angle(r, 1);
+    if (sensor) m.magnetic_heading = *sensor + deviation.value_or(Angle());
+    m.variation = sided_angle(r, 3);
+}
+
+void read(Rot& m, FieldReader& r) {
+    m.degrees_per_minute = r.number(0, "a rate of turn");
+    m.valid = r.either(1, "AV", "A or V");
+}
+
 template <class Message, std::size_t least_fields>
 Result<NmeaMessage> decode(FieldReader r) {
     Message message;
@@ -231,7 +249,7 @@ struct Decoder {
     std::string_view formatter;
     Result<NmeaMessage> (*decode)(FieldReader);
 };
-constexpr std::array<Decoder, 16> decoders{{{"RMC", decode<Rmc, 9>},
+constexpr std::array<Decoder, 18> decoders{{{"RMC", decode<Rmc, 9>},
                                             {"VTG", decode<Vtg, 8>},
                                             {"GGA", decode<Gga, 12>},
                                             {"GSA", decode<Gsa, 17>},
@@ -246,7 +264,9 @@ constexpr std::array<Decoder, 16> decoders{{{"RMC", decode<Rmc, 9>},
                                             {"DTM", decode<Dtm, 8>},
                                             {"VLW", decode<Vlw, 4>},
                                             {"THS", decode<Ths, 2>},
-                                            {"HDT", decode<Hdt, 2>}}};
+                                            {"HDT", decode<Hdt, 2>},
+                                            {"HDG", decode<Hdg, 5>},
+                                            {"ROT", decode<Rot, 2>}}};
 
 }  // namespace
 

@@ -20,19 +20,21 @@ struct NmeaFormat {
     int altitude_decimals = 1;
     bool limit_82 = true;  ///< GGA, GNS and GRS give up decimals rather than exceed 82 characters
     // Where makers differ (RECEIVER.md 5.8 to 5.10); the defaults are u-blox's.
-    int speed_decimals = 3;          ///< of RMC and VTG
-    int course_decimals = 2;         ///< of RMC and VTG
-    int vtg_speed_decimals = -1;     ///< of VTG; -1: as of RMC
-    int vtg_course_decimals = -1;    ///< the same
-    bool magnetic_fields = false;    ///< RMC has the magnetic variation 0.0,E, VTG the true course as the magnetic one
-    char rmc_status = 'V';           ///< navigational status of a valid RMC since version 4.10
-    bool empty_gsv_fields = false;   ///< a page of GSV without satellites has the fields of one, and no signal
-    int dop_decimals = 2;            ///< of GGA, GNS and GSA
-    double most_dop = 99.99;         ///< what larger ones are shown as
-    bool satellites_padded = true;   ///< numSV of GGA and GNS has two digits: "07", not "7"
-    bool units_always = false;       ///< GGA has the units of heights that it does not tell
-    bool deviations_padded = false;  ///< GST in the manner of MediaTek: "004.0", the last field "00014"
-    std::string_view no_station{};   ///< the last field of GGA without a correction station: empty, or "0000"
+    int speed_decimals = 3;             ///< of RMC and VTG
+    int course_decimals = 2;            ///< of RMC and VTG
+    int vtg_speed_decimals = -1;        ///< of VTG; -1: as of RMC
+    int vtg_course_decimals = -1;       ///< the same
+    bool magnetic_fields = false;       ///< RMC has the magnetic variation, VTG the magnetic course
+    double magnetic_variation_deg = 0;  ///< east positive; of HDG too
+    int heading_decimals = 2;           ///< of HDT, THS and HDG
+    char rmc_status = 'V';              ///< navigational status of a valid RMC since version 4.10
+    bool empty_gsv_fields = false;      ///< a page of GSV without satellites has the fields of one, and no signal
+    int dop_decimals = 2;               ///< of GGA, GNS and GSA
+    double most_dop = 99.99;            ///< what larger ones are shown as
+    bool satellites_padded = true;      ///< numSV of GGA and GNS has two digits: "07", not "7"
+    bool units_always = false;          ///< GGA has the units of heights that it does not tell
+    bool deviations_padded = false;     ///< GST in the manner of MediaTek: "004.0", the last field "00014"
+    std::string_view no_station{};      ///< the last field of GGA without a correction station: empty, or "0000"
 };
 
 /// `time` in UTC, rounded to `decimals` (0 … 9) digits of a second: the carry goes as far as the year, and through

@@ -49,6 +49,8 @@ constexpr auto sentence_table = std::to_array<SentenceNames>({
     {"VLW", "water_total_nmi -n water_nmi -n ground_total_nmi -n ground_nmi -n"},
     {"THS", "heading_deg mode/s"},
     {"HDT", "heading_deg -t"},
+    {"HDG", "magnetic_heading_deg deviation_deg deviation_side/s variation_deg variation_side/s"},
+    {"ROT", "rate_dpm status/s"},
     {"TXT", "count index type text/s"},
     {"PUBX-00",
      "-number time/t lat_deg/c lon_deg/c height_m status/s h_acc_m v_acc_m speed_kmph course_deg "

@@ -105,12 +105,39 @@ std::string encode(const Vlw& m, const NmeaFormat& format) {
     return s.finish();
 }
 
-std::string encode(const Ths& m, const NmeaFormat&) {
-    return Sentence(m.talker + "THS").text(m.heading ? course_text(*m.heading, 2) : "").letter(m.mode).finish();
+namespace {
+
+std::string heading_text(const std::optional<Angle>& heading, const NmeaFormat& format) {
+    return heading ? course_text(*heading, format.heading_decimals) : "";
 }
 
-std::string encode(const Hdt& m, const NmeaFormat&) {
-    return Sentence(m.talker + "HDT").text(m.heading ? course_text(*m.heading, 2) : "").letter('T').finish();
+// Its amount, and E or W.
+void add_variation(Sentence& s, double degrees) { s.decimal(std::abs(degrees), 1).letter(degrees < 0 ? 'W' : 'E'); }
+
+}  // namespace
+
+std::string encode(const Ths& m, const NmeaFormat& format) {
+    return Sentence(m.talker + "THS").text(heading_text(m.heading, format)).letter(m.mode).finish();
+}
+
+std::string encode(const Hdt& m, const NmeaFormat& format) {
+    return Sentence(m.talker + "HDT").text(heading_text(m.heading, format)).letter('T').finish();
+}
+
+std::string encode(const Hdg& m, const NmeaFormat& format) {
+    Sentence s(m.talker + "HDG");
+    s.text(heading_text(m.magnetic_heading, format)).empty(2);
+    if (m.variation)
+        add_variation(s, m.variation->deg());
+    else
+        s.empty(2);
+    return s.finish();
+}
+
+std::string encode(const Rot& m, const NmeaFormat&) {
+    Sentence s(m.talker + "ROT");
+    add_decimal(s, m.degrees_per_minute, 1);
+    return s.letter(m.valid ? 'A' : 'V').finish();
 }
 
 namespace {
@@ -203,7 +230,7 @@ std::string encode(const Rmc& m, const NmeaFormat& format) {
     add_decimal(s, m.speed ? std::optional(in_knots(*m.speed)) : std::nullopt, format.speed_decimals);
     s.text(m.course ? course_text(*m.course, format.course_decimals) : "").text(m.date ? date_text(*m.date) : "");
     if (format.magnetic_fields)
-        s.text("0.0").letter('E');
+        add_variation(s, format.magnetic_variation_deg);
     else
         s.empty(2);
     add_mode(s, m.mode, format);
@@ -218,9 +245,11 @@ std::string encode(const Vtg& m, const NmeaFormat& format) {
     } else {
         const auto own = [](int decimals, int of_rmc) { return decimals < 0 ? of_rmc : decimals; };
         const int speed_decimals = own(format.vtg_speed_decimals, format.speed_decimals);
-        const std::string course =
-            m.course ? course_text(*m.course, own(format.vtg_course_decimals, format.course_decimals)) : "";
-        s.text(course).letter('T').text(format.magnetic_fields ? course : "").letter('M');
+        const int course_decimals = own(format.vtg_course_decimals, format.course_decimals);
+        const Angle variation = Angle::degrees(format.magnetic_variation_deg);
+        s.text(m.course ? course_text(*m.course, course_decimals) : "").letter('T');
+        const bool magnetic = m.course && format.magnetic_fields;
+        s.text(magnetic ? course_text(*m.course - variation, course_decimals) : "").letter('M');
         s.decimal(in_knots(*m.speed), speed_decimals).letter('N');
         s.decimal(in_kmh(*m.speed), speed_decimals).letter('K');
     }

@@ -86,6 +86,22 @@ struct Hdt {
     bool operator==(const Hdt&) const = default;
 };
 
+/// Magnetic heading. What a compass is off by for the iron of its vehicle is a compass's, and left out.
+struct Hdg {
+    std::string talker = "HC";
+    std::optional<Angle> magnetic_heading;
+    std::optional<Angle> variation;  ///< of the magnetic from the true north, east positive
+    bool operator==(const Hdg&) const = default;
+};
+
+/// Rate of turn.
+struct Rot {
+    std::string talker = "GN";
+    std::optional<double> degrees_per_minute;  ///< positive: the bow turns to starboard
+    bool valid = false;
+    bool operator==(const Rot&) const = default;
+};
+
 /// The sentence, with checksum and line end. Layouts and digits: RECEIVER.md 5.2 and 5.3.
 std::string encode(const Gns& message, const NmeaFormat& format);
 std::string encode(const Gbs& message, const NmeaFormat& format);
@@ -94,6 +110,8 @@ std::string encode(const Dtm& message, const NmeaFormat& format);
 std::string encode(const Vlw& message, const NmeaFormat& format);
 std::string encode(const Ths& message, const NmeaFormat& format);
 std::string encode(const Hdt& message, const NmeaFormat& format);
+std::string encode(const Hdg& message, const NmeaFormat& format);
+std::string encode(const Rot& message, const NmeaFormat& format);
 
 // Every message names its talker ("GN"), and absent values are empty fields.
 
@@ -124,7 +142,8 @@ struct Gga {
     std::string talker = "GN";
     std::optional<NmeaTime> time;
     std::optional<NmeaPosition> position;
-    int quality = 0;  ///< 0 none, 1 autonomous, 2 differential, 4 RTK fixed, 5 RTK float, 6 estimated
+    int quality = 0;  ///< 0 none, 1 autonomous, 2 differential, 3 PPS, 4 RTK fixed, 5 RTK float, 6 estimated,
+                      ///< 7 manual, 8 simulated
     int satellites_used = 0;
     std::optional<double> hdop;
     std::optional<Metres> altitude;          ///< above mean sea level
@@ -208,7 +227,8 @@ struct Txt {
     bool operator==(const Txt&) const = default;
 };
 
-using NmeaMessage = std::variant<Rmc, Vtg, Gga, Gsa, Gsv, Gll, Gst, Zda, Txt, Gns, Gbs, Grs, Dtm, Vlw, Ths, Hdt>;
+using NmeaMessage =
+    std::variant<Rmc, Vtg, Gga, Gsa, Gsv, Gll, Gst, Zda, Txt, Gns, Gbs, Grs, Dtm, Vlw, Ths, Hdt, Hdg, Rot>;
 
 /// The sentence, with checksum and line end. Layouts and digits: RECEIVER.md 5.2, 5.3 and 5.5.
 std::string encode(const Rmc& message, const NmeaFormat& format);
@@ -222,9 +242,9 @@ std::string encode(const Zda& message, const NmeaFormat& format);
 std::string encode(const Txt& message, const NmeaFormat& format);
 std::string encode(const NmeaMessage& message, const NmeaFormat& format);
 
-/// Reads RMC, VTG, GGA, GSA, GSV, GLL, GST, ZDA, TXT, GNS, GBS, GRS, DTM, VLW, THS and HDT of any version and talker.
-/// Fields that a later version added may be missing. Fails with `input`, naming the sentence and the field, when a
-/// field is not what its place demands, and for every other kind of sentence.
+/// Reads RMC, VTG, GGA, GSA, GSV, GLL, GST, ZDA, TXT, GNS, GBS, GRS, DTM, VLW, THS, HDT, HDG and ROT of any version and
+/// talker. Fields that a later version added may be missing. Fails with `input`, naming the sentence and the field,
+/// when a field is not what its place demands, and for every other kind of sentence.
 Result<NmeaMessage> decode_nmea(const SentenceView& sentence);
 
 /// parse_sentence(), then decode_nmea().

@@ -11,7 +11,7 @@
 namespace skyloop::inline receiver {
 
 /// Which fields the sentences have and how satellites are numbered (RECEIVER.md 5.2).
-enum class NmeaVersion { v2_1, v2_3, v4_0, v4_10, v4_11 };
+enum class NmeaVersion { v2_1, v2_3, v3_0, v4_0, v4_10, v4_11 };
 
 /// A group of satellites that GSA and GSV report together.
 struct NmeaSystem {

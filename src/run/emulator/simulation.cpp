@@ -87,6 +87,7 @@ Trace Simulation::run(GpsTime time, const ReceiverSettings& settings, ActiveFaul
         make_modelled_fix(*std::get<std::unique_ptr<ErrorModel>>(parts_.fix_maker), trace);
     if (!settings.navigating) withhold(trace.epoch.fix);
     trace.epoch.front_end = front;
+    if (trace.truth.orientation) trace.epoch.compass_heading = trace.truth.orientation->attitude.yaw();
     if (faults != nullptr) faults->edit_epoch(trace);
     return trace;
 }

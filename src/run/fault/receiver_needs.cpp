@@ -40,6 +40,8 @@ std::string name_in_dialogue(UbxMessageId id) {
 
 // Whole sentences among its texts, and TXT for the others.
 void add_texts(const BoardProfile& board, std::vector<std::string>& names) {
+    for (const firmware::OwnLine& line : board.style.lines)
+        names.push_back(line.text.substr(1, line.text.find_first_of(",{") - 1));
     for (const auto* texts : {&board.identity.banner, &board.power.texts})
         for (const std::string& text : *texts)
             names.push_back(text.starts_with('$') ? text.substr(1, text.find(',') - 1) : "TXT");
@@ -63,7 +65,7 @@ bool reports_heading(const UsedReceiver& receiver) {
     const Abilities can = firmware::abilities(receiver.board);
     // Whoever has a command line sends THS when it is asked, and knows itself whether it has a pair.
     const bool by_command = can.choice == Abilities::MessageChoice::command_line;
-    return can.heading || (!by_command && has_sentence(receiver, "THS"));
+    return can.heading || (!by_command && (has_sentence(receiver, "THS") || has_sentence(receiver, "HDT")));
 }
 
 bool reports_accuracies(const UsedReceiver& receiver) {

@@ -213,47 +213,6 @@ void check_factory_config(TableReader& top, const BoardProfile& board) {
         top.mistake_here("the factory settings do not go together: systems, signals, antenna supply");
 }
 
-constexpr std::array<std::string_view, 6> board_talkers{"GP", "GL", "GA", "GB", "GQ", "GN"};
-constexpr std::array<std::string_view, 2> beidou_talkers{"GB", "BD"}, qzss_talkers{"GQ", "QZ"};
-constexpr std::array<std::string_view, 2> station_fields{"", "0000"};
-constexpr std::array<std::string_view, 4> rmc_statuses{"S", "C", "U", "V"};
-
-void read_board_sentences(TableReader& rates, std::vector<firmware::SentenceRate>& sentences) {
-    for (std::size_t i = 0; i < std::size(firmware::nmea_sentence_names); ++i) {
-        int every = 0;
-        rates.integer(firmware::nmea_sentence_names[i], every, {0, 255});
-        if (every > 0) sentences.push_back({static_cast<firmware::NmeaSentence>(i), every});
-    }
-}
-
-void read_one_of(TableReader& table, std::string_view key, std::span<const std::string_view> words,
-                 std::string& value) {
-    if (const auto index = table.choice(key, words, {}, value)) value = words[*index];
-}
-
-void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
-    nmea.integer("speed_decimals", style.speed_decimals, {0, 3});
-    nmea.integer("course_decimals", style.course_decimals, {0, 3});
-    nmea.boolean("course_always", style.course_always);
-    nmea.boolean("satellites_padded", style.satellites_padded);
-    nmea.integer("vtg_speed_decimals", style.vtg_speed_decimals, {-1, 5});
-    nmea.integer("vtg_course_decimals", style.vtg_course_decimals, {-1, 5});
-    nmea.integer("altitude_decimals", style.altitude_decimals, {0, 4});
-    nmea.integer("dop_decimals", style.dop_decimals, {0, 3});
-    nmea.number("unknown_dop", style.unknown_dop, {0, 9999});
-    nmea.boolean("magnetic_fields", style.magnetic_fields);
-    nmea.boolean("gsa_manual", style.gsa_manual);
-    nmea.boolean("tracked_only", style.tracked_only);
-    nmea.boolean("gst_ellipse", style.gst_ellipse);
-    nmea.boolean("gst_padded", style.gst_padded);
-    nmea.boolean("zeros_without_fix", style.zeros_without_fix);
-    nmea.boolean("unknown_date_is_1980", style.unknown_date_is_1980);
-    read_one_of(nmea, "rmc_status", rmc_statuses, style.rmc_status);
-    read_one_of(nmea, "station_field", station_fields, style.station_field);
-    read_one_of(nmea, "beidou_talker", beidou_talkers, style.beidou_talker);
-    read_one_of(nmea, "qzss_talker", qzss_talkers, style.qzss_talker);
-}
-
 void read_maker(TableReader& top, MakerKind& maker) {
     std::vector<std::string_view> names;
     for (const firmware::MakerRow& row : firmware::maker_rows())
@@ -333,27 +292,6 @@ void read_board_keys(TableReader& top, BoardProfile& board) {
     if (!top.has("config") && board.maker == firmware::MakerKind::ublox) leave_out_rates_of_others(board);
     top.table("config", [&](TableReader& t) { read_board_config(t, board); });
     check_factory_config(top, board);
-}
-
-void read_board_nmea(TableReader& nmea, firmware::BoardProfile& board) {
-    nmea.word("version",
-              {{"2.1", NmeaVersion::v2_1},
-               {"2.3", NmeaVersion::v2_3},
-               {"4.0", NmeaVersion::v4_0},
-               {"4.10", NmeaVersion::v4_10},
-               {"4.11", NmeaVersion::v4_11}},
-              board.nmea_version);
-    nmea.word("satellite_numbering", {{"strict", NmeaNumbering::strict}, {"extended", NmeaNumbering::extended}},
-              board.satellite_numbering);
-    nmea.text("main_talker", board.main_talker);
-    if (!board.main_talker.empty()) nmea.choice("main_talker", board_talkers);
-    nmea.integer("coordinate_decimals", board.coordinate_decimals, {3, 8});
-    nmea.integer("time_decimals", board.time_decimals, {0, 3});
-    nmea.integer("max_listed_satellites", board.max_listed_satellites, {4, 99});
-    nmea.quantity("course_min_speed_mps", board.course_min_speed, {0, 10});
-    nmea.boolean("overflow_notice", board.quirks.overflow_notice);
-    read_board_style(nmea, board.style);
-    nmea.table("sentences", [&](TableReader& rates) { read_board_sentences(rates, board.sentences); });
 }
 
 }  // namespace skyloop::inline run

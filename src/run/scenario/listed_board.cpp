@@ -28,6 +28,12 @@ Json json_of(const toml::node& node) {
             values.push_back(json_of(item));
         return values;
     }
+    if (const auto* table = node.as_table()) {
+        Json values = Json::object();
+        for (const auto& [key, value] : *table)
+            values[std::string(key.str())] = json_of(value);
+        return values;
+    }
     if (const auto* text = node.as_string()) return text->get();
     if (const auto* flag = node.as_boolean()) return flag->get();
     if (const auto* whole = node.as_integer()) return whole->get();
@@ -64,8 +70,9 @@ const toml::table* table_at(const toml::table& top, std::string_view path) {
 
 // Messages and items have tables of their own; what was not said of a legacy message has no standard.
 bool is_listed(const KeyTable& table, const KeyEntry& key, const toml::table* given) {
-    const bool optional =
-        table.path == "ubx.legacy" || table.path == "usb" || table.path == "sbf" || table.path == "dronecan";
+    const bool optional = table.path == "ubx.legacy" || table.path == "usb" || table.path == "sbf" ||
+                          table.path == "dronecan" || table.path == "nmea.late";
+    if (table.path == "nmea.lines") return false;  // listed as a whole
     if (key.type == KeyType::table || key.type == KeyType::named_values || table.path == "config") return false;
     if (table.path.empty()) return key.name == "personality";
     return !(table.path == "ubx" && key.name == "messages") &&

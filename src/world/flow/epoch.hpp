@@ -46,6 +46,9 @@ struct Epoch {
     std::vector<Subframe> subframes{};  ///< received since the epoch before, when the settings ask for them
     FrontEnd front_end{};
     std::optional<RelativePosition> relative{};  ///< to the base antenna of a pair
+    /// What a compass beside the receiver says of its vehicle, from true north; nothing where the path tells no
+    /// attitude.
+    std::optional<Angle> compass_heading{};
 };
 
 }  // namespace skyloop::inline world

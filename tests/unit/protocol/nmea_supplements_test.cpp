@@ -46,6 +46,32 @@ TEST(Supplements, AreTheSentencesOfReceivers) {
     EXPECT_EQ(gns.correction_station, std::nullopt);
 }
 
+// Of a compass with a deviation and a western variation.
+TEST(Supplements, TellHeadingsAndTurns) {
+    expect_same<Rot>("$HEROT,-4.8,A*0A", of_4_0);
+    expect_same<Rot>("$GNROT,,V*16", of_4_0);
+    const Hdg compass = read_back<Hdg>(Sentence("HCHDG,101.1,2.0,W,7.1,W").finish());
+    ASSERT_TRUE(compass.magnetic_heading && compass.variation);
+    EXPECT_NEAR(compass.magnetic_heading->deg(), 99.1, 1e-9) << "the deviation is taken off";
+    EXPECT_NEAR(compass.variation->deg(), -7.1, 1e-9);
+    EXPECT_EQ(encode(compass, {.heading_decimals = 1}), Sentence("HCHDG,99.1,,,7.1,W").finish());
+    EXPECT_EQ(encode(Hdg{}, of_4_0), Sentence("HCHDG,,,,,").finish());
+    EXPECT_THAT(supplement_refusal("HCHDG,101.1,,,7.1,X"), HasSubstr("expected E or W"));
+    EXPECT_THAT(supplement_refusal("HEROT,12,X"), HasSubstr("expected A or V"));
+    EXPECT_THAT(supplement_refusal("HEROT,fast,A"), HasSubstr("a rate of turn"));
+}
+
+TEST(Supplements, TurnCoursesByTheMagneticVariation) {
+    const NmeaFormat west{.version = NmeaVersion::v2_3, .magnetic_fields = true, .magnetic_variation_deg = -3.5};
+    Vtg vtg{"GP", Angle::degrees(358), MetresPerSecond(0), NmeaMode::autonomous};
+    EXPECT_THAT(encode(vtg, west), StartsWith("$GPVTG,358.00,T,1.50,M,"));
+    Rmc rmc;
+    rmc.mode = NmeaMode::none;
+    EXPECT_THAT(encode(rmc, west), HasSubstr(",3.5,W,N*"));
+    vtg.course.reset();
+    EXPECT_THAT(encode(vtg, west), StartsWith("$GPVTG,,T,,M,"));
+}
+
 TEST(Supplements, FollowTheirVersion) {
     Gns gns;
     gns.modes = {NmeaMode::none, NmeaMode::none};

@@ -27,7 +27,7 @@ TEST(ScenarioMistakes, WrongTypesSayWhatWasFoundAndExpected) {
               "test.toml:2:9: receiver.board: is a whole number; expected a text in quotes");
     EXPECT_EQ(mistakes_of("[[receiver]]\nsentences = \"RMC\""),
               "test.toml:2:13: receiver.sentences: is a text; expected a list of some of RMC VTG GGA GNS GSA GSV GLL "
-              "GST ZDA GBS DTM GRS VLW THS");
+              "GST ZDA GBS DTM GRS VLW THS HDT HDG ROT");
     EXPECT_EQ(mistakes_of("[[receiver]]\nport = [1]"),
               "test.toml:2:9: receiver.port: holds a whole number; expected a list of texts");
     EXPECT_EQ(mistakes_of("[model]\nname = 3"),
@@ -104,7 +104,7 @@ TEST(ScenarioMistakes, UnknownWordsSuggestTheNearestKnown) {
     EXPECT_EQ(
         mistakes_of("[[receiver]]\nsentences = [\"RMC\", \"GGGA\"]"),
         "test.toml:2:21: receiver.sentences: holds 'GGGA'; expected a list of some of RMC VTG GGA GNS GSA GSV GLL "
-        "GST ZDA GBS DTM GRS VLW THS; did you mean 'GGA'?");
+        "GST ZDA GBS DTM GRS VLW THS HDT HDG ROT; did you mean 'GGA'?");
     EXPECT_THAT(mistakes_of("[atmosphere]\nenvironment = \"citty\""), HasSubstr("did you mean 'city'?"));
     EXPECT_THAT(mistakes_of("[[atmosphere.cloud]]\nkind = \"cumulos\""), HasSubstr("did you mean 'cumulus'?"));
     EXPECT_THAT(mistakes_of("[model]\nname = \"moderne\""), HasSubstr("did you mean 'modern'?"));

@@ -59,7 +59,9 @@ private:
 };
 
 std::uint64_t number_of(NmeaVersion version) {
-    return std::ranges::find(numbered_nmea_versions, version, &NumberedNmeaVersion::version)->item;
+    constexpr std::uint64_t of_4_0 = 40;
+    const auto* const found = std::ranges::find(numbered_nmea_versions, version, &NumberedNmeaVersion::version);
+    return found == numbered_nmea_versions.end() ? of_4_0 : found->item;
 }
 
 // 0 for one that has no number: by the systems.
