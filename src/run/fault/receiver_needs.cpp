@@ -30,6 +30,14 @@ bool is_factory_sentence(const BoardProfile& board, UbxMessageId message) {
     });
 }
 
+// Whether one of the board's own lines has such a place: "{HDT." or "{heading_deg".
+bool has_in_a_line(const UsedReceiver& receiver, std::initializer_list<std::string_view> places) {
+    return std::ranges::any_of(receiver.board.style.lines, [&](const firmware::OwnLine& line) {
+        return std::ranges::any_of(places,
+                                   [&](std::string_view place) { return line.text.find(place) != std::string::npos; });
+    });
+}
+
 // As a dialogue calls it: sentences by their formatters, PUBX,00 by its number, RTCM by its type.
 std::string name_in_dialogue(UbxMessageId id) {
     std::string name(ubx_message_name(id).value_or("UBX-" + to_string(id)));
@@ -65,11 +73,17 @@ bool reports_heading(const UsedReceiver& receiver) {
     const Abilities can = firmware::abilities(receiver.board);
     // Whoever has a command line sends THS when it is asked, and knows itself whether it has a pair.
     const bool by_command = can.choice == Abilities::MessageChoice::command_line;
-    return can.heading || (!by_command && (has_sentence(receiver, "THS") || has_sentence(receiver, "HDT")));
+    if (can.heading || has_in_a_line(receiver, {"{heading_deg", "{HDT.", "{THS."})) return true;
+    return !by_command && (has_sentence(receiver, "THS") || has_sentence(receiver, "HDT"));
 }
 
 bool reports_accuracies(const UsedReceiver& receiver) {
-    return can<&Abilities::accuracies>(receiver) || has_sentence(receiver, "GST") || has_sentence(receiver, "GBS");
+    return can<&Abilities::accuracies>(receiver) || has_sentence(receiver, "GST") || has_sentence(receiver, "GBS") ||
+           has_in_a_line(receiver, {"_acc_m", "{acc_m", "{GST.", "{GBS."});
+}
+
+bool reports_weeks(const UsedReceiver& receiver) {
+    return can<&Abilities::weeks>(receiver) || has_in_a_line(receiver, {"{week"});
 }
 
 bool reports_time(const UsedReceiver& receiver) {

@@ -37,6 +37,7 @@ bool can(const UsedReceiver& receiver) {
 bool takes_commands(const UsedReceiver& receiver);
 bool reports_heading(const UsedReceiver& receiver);
 bool reports_accuracies(const UsedReceiver& receiver);
+bool reports_weeks(const UsedReceiver& receiver);
 bool reports_time(const UsedReceiver& receiver);
 bool reports_calendar(const UsedReceiver& receiver);
 bool solves_rtk(const UsedReceiver& receiver);
@@ -58,7 +59,7 @@ inline constexpr ReceiverNeed heading_report{"has no message with the vector of 
 inline constexpr ReceiverNeed accuracy_report{"has no message with accuracies", reports_accuracies};
 inline constexpr ReceiverNeed time_report{"has no message with the time", reports_time};
 inline constexpr ReceiverNeed calendar_report{"has no message with the calendar of UTC", reports_calendar};
-inline constexpr ReceiverNeed week_report{"has no message with week numbers", can<&firmware::Abilities::weeks>};
+inline constexpr ReceiverNeed week_report{"has no message with week numbers", reports_weeks};
 inline constexpr ReceiverNeed correction_input{"takes no corrections", can<&firmware::Abilities::corrections>};
 inline constexpr ReceiverNeed rtk_solution{"has no RTK", solves_rtk};
 inline constexpr ReceiverNeed dead_reckoning_report{"never reports dead reckoning", reports_dead_reckoning};
