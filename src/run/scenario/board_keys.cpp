@@ -75,6 +75,7 @@ void read_board_timing(TableReader& table, firmware::Timing& timing) {
     table.quantity("flash_write_s", timing.flash_write, {0, 10});
     table.quantity("signal_restart_s", timing.signal_restart, {0, 60});
     table.quantity("latency_deviation_s", timing.latency_deviation, {0, 1});
+    table.quantity("command_sleep_s", timing.command_sleep, {0, 60});
     table.quantity("coasting_s", timing.coasting, {0, 600});
     table.quantity("cold_start_s", timing.cold_start, {0, 3600});
     table.quantity("warm_start_s", timing.warm_start, {0, 3600});
@@ -244,6 +245,7 @@ void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
     nmea.boolean("magnetic_fields", style.magnetic_fields);
     nmea.boolean("gsa_manual", style.gsa_manual);
     nmea.boolean("tracked_only", style.tracked_only);
+    nmea.boolean("one_gsv_list", style.one_gsv_list);
     nmea.boolean("gst_ellipse", style.gst_ellipse);
     nmea.boolean("gst_padded", style.gst_padded);
     nmea.boolean("zeros_without_fix", style.zeros_without_fix);
