@@ -11,7 +11,7 @@ namespace skyloop::firmware {
 namespace {
 
 constexpr std::uint16_t eight_bits_no_parity = 0x08C0;
-constexpr std::uint8_t this_port = 0xFF;
+constexpr std::uint8_t casic_this_port = 0xFF;
 
 // Numbers of ports are those of the board's UARTs in their order.
 std::vector<PortId> uarts_of(const BoardProfile& board) {
@@ -137,8 +137,8 @@ bool CasicMaker::set_port(const Request& request) {
     const std::vector<PortId> uarts = uarts_of(board());
     if (!wanted || wanted->mode != eight_bits_no_parity || (wanted->protocols & ~casic_all_protocols) != 0)
         return false;
-    if (wanted->port != this_port && wanted->port >= uarts.size()) return false;
-    const PortId port = wanted->port == this_port ? request.asked.from : uarts[wanted->port];
+    if (wanted->port != casic_this_port && wanted->port >= uarts.size()) return false;
+    const PortId port = wanted->port == casic_this_port ? request.asked.from : uarts[wanted->port];
     if (!set_casic_speed(settings(), board(), port, wanted->baud)) return false;
     settings().set(in_ram, CasicKeys::protocols(port), wanted->protocols);
     return true;

@@ -38,6 +38,8 @@ CasicSettings casic_settings(const BoardProfile& board) {
     for (const PortId port : board.ports) {
         const std::string_view name = port_names[static_cast<std::size_t>(port)];
         add_casic_setting(settings, CasicKeys::protocols(port), fmt::format("protocols_{}", name), casic_all_protocols);
+        if (is_uart(port))
+            add_casic_setting(settings, SentenceSettings::baud(port), fmt::format("baud_{}", name), board.baud);
         add_casic_setting(settings, CasicKeys::antenna_text(port), fmt::format("ANT_{}", name), 1);
         for (std::size_t i = 0; i < casic_periodic.size(); ++i)
             add_casic_setting(settings, CasicKeys::rate(i, port),

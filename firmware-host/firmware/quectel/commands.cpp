@@ -14,8 +14,7 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr std::int64_t axis_offset_m = 8'000'000, rests_per_metre = 10'000;
-constexpr double farthest_m = 7'000'000;
+constexpr double quectel_farthest_m = 7'000'000;
 
 // Topics that are taken and told, without effect, as an LG290P tells them from the factory on.
 struct QuectelTopic {
@@ -191,8 +190,8 @@ QuectelMaker::Verdict QuectelMaker::mode(const Command& command) {
 // "W,mode,positions,accuracy,x,y,z": 0 none, 1 a survey, 2 stands at x y z.
 QuectelMaker::Verdict QuectelMaker::survey(const Command& command) {
     const auto axis_m = [&](std::size_t axis) {
-        return static_cast<double>(coming(QuectelKeys::metres(axis))) - static_cast<double>(axis_offset_m) +
-               static_cast<double>(coming(QuectelKeys::rest(axis))) / static_cast<double>(rests_per_metre);
+        return static_cast<double>(coming(QuectelKeys::metres(axis))) - static_cast<double>(quectel_axis_offset_m) +
+               static_cast<double>(coming(QuectelKeys::rest(axis))) / static_cast<double>(quectel_rests_per_metre);
     };
     constexpr double thousandths = 1000, largest = 4e6;
     if (command.reads()) {
@@ -205,7 +204,7 @@ QuectelMaker::Verdict QuectelMaker::survey(const Command& command) {
     std::array<double, 6> numbers{};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         const auto number = number_in<double>(command.field(i + 1));
-        if (!command.writes() || !number || !(std::abs(*number) <= farthest_m)) return Verdict::wrong_parameter;
+        if (!command.writes() || !number || !(std::abs(*number) <= quectel_farthest_m)) return Verdict::wrong_parameter;
         numbers[i] = *number;
     }
     const auto [kind, positions, accuracy, x, y, z] = numbers;
@@ -216,9 +215,10 @@ QuectelMaker::Verdict QuectelMaker::survey(const Command& command) {
     set_coming(QuectelKeys::survey_positions, static_cast<std::uint64_t>(positions));
     set_coming(QuectelKeys::survey_accuracy_mm, static_cast<std::uint64_t>(std::lround(accuracy * thousandths)));
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::int64_t rests = std::llround(numbers[axis + 3] * rests_per_metre) + axis_offset_m * rests_per_metre;
-        set_coming(QuectelKeys::metres(axis), static_cast<std::uint64_t>(rests / rests_per_metre));
-        set_coming(QuectelKeys::rest(axis), static_cast<std::uint64_t>(rests % rests_per_metre));
+        const std::int64_t rests =
+            std::llround(numbers[axis + 3] * quectel_rests_per_metre) + quectel_axis_offset_m * quectel_rests_per_metre;
+        set_coming(QuectelKeys::metres(axis), static_cast<std::uint64_t>(rests / quectel_rests_per_metre));
+        set_coming(QuectelKeys::rest(axis), static_cast<std::uint64_t>(rests % quectel_rests_per_metre));
     }
     return Verdict::ok;
 }

@@ -13,9 +13,6 @@
 namespace skyloop::firmware {
 namespace {
 
-constexpr std::int64_t axis_offset_m = 8'000'000;
-constexpr double rests_per_metre = 10'000;
-
 // A base of a few letters in the name of the module: LC29H-BS.
 bool is_base_module(const BoardProfile& board) { return board.identity.hardware.ends_with("BS"); }
 
@@ -35,12 +32,17 @@ QuectelSettings quectel_settings(const BoardProfile& board) {
     add(QuectelKeys::survey_positions, "survey_positions", 0);
     add(QuectelKeys::survey_accuracy_mm, "survey_accuracy_mm", 0);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        add(QuectelKeys::metres(axis), fmt::format("survey_{}_m", "xyz"[axis]), axis_offset_m);
+        add(QuectelKeys::metres(axis), fmt::format("survey_{}_m", "xyz"[axis]),
+            static_cast<std::uint64_t>(quectel_axis_offset_m));
         add(QuectelKeys::rest(axis), fmt::format("survey_{}_rest", "xyz"[axis]), 0);
     }
     add(QuectelKeys::msm, "msm", base ? 7 : 4);
     add(QuectelKeys::station, "station_message", 1);
     add(QuectelKeys::elevation, "elevation_deg", static_cast<std::uint64_t>(std::lround(board.elevation_mask.deg())));
+    for (const PortId port : board.ports)
+        if (is_uart(port))
+            add(SentenceSettings::baud(port), fmt::format("baud_{}", port_names[static_cast<std::size_t>(port)]),
+                board.baud);
     for (const PortId port : board.ports)
         for (std::size_t i = 0; i < quectel_messages.size(); ++i)
             add(QuectelKeys::rate(i, port),
@@ -107,16 +109,17 @@ void QuectelMaker::adjust(ReceiverConfig& config) const {
     if (store.value(QuectelKeys::survey) != stands) return;
     std::array<double, 3> place{};
     for (std::size_t axis = 0; axis < 3; ++axis)
-        place[axis] = static_cast<double>(store.value(QuectelKeys::metres(axis))) - static_cast<double>(axis_offset_m) +
-                      static_cast<double>(store.value(QuectelKeys::rest(axis))) / rests_per_metre;
+        place[axis] =
+            static_cast<double>(store.value(QuectelKeys::metres(axis))) - static_cast<double>(quectel_axis_offset_m) +
+            static_cast<double>(store.value(QuectelKeys::rest(axis))) / static_cast<double>(quectel_rests_per_metre);
     config.place = BasePlace{Position<Ecef>(place[0], place[1], place[2]), Metres(0)};
 }
 
-// A rover sends sentences; a base its place, its name and observations each second, and its survey where it is asked
-// to.
+// A rover sends sentences, as a module that is nothing but a base does where it is asked to; a base its place, its name
+// and observations each second, and its survey where it is asked to.
 DueMessages QuectelMaker::due(PortId port, EpochMessages& made, const FirmwareFaults& faults) {
     DueMessages due;
-    if (!is_base()) due = SentenceMaker::due(port, made, faults);
+    if (!is_base() || is_base_module(board())) due = SentenceMaker::due(port, made, faults);
     std::vector<Bytes> own;
     for (std::size_t i = 0; i < quectel_messages.size(); ++i) {
         const std::uint64_t every = settings().value(QuectelKeys::rate(i, port));

@@ -28,6 +28,8 @@ inline constexpr std::array<QuectelMessage, 7> quectel_messages{{{"PQTMEPE", 2},
 
 inline constexpr std::uint64_t quectel_rover = 1, quectel_base = 2;
 
+inline constexpr std::int64_t quectel_axis_offset_m = 8'000'000, quectel_rests_per_metre = 10'000;
+
 /// Keys of the settings of their own. Coordinates are whole metres from −8,000,000 on and tenths of millimetres.
 struct QuectelKeys {
     static constexpr std::uint32_t mode = 5000;  ///< 1 rover, 2 base

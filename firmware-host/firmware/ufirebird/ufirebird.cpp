@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t systems_key = 5000, notices_key = 5001;
 constexpr std::array<OwnSetting, 2> ufirebird_settings{{{systems_key, "cfgsys", 0x55155}, {notices_key, "notices", 3}}};
-constexpr std::size_t longest_line = 240;  // invented
+constexpr std::size_t ufirebird_longest_line = 240;  // invented
 
 }  // namespace
 
@@ -37,7 +37,7 @@ UfirebirdMaker::UfirebirdMaker(const BoardProfile& board, const ReceiverOptions&
 
 std::vector<StreamPiece> UfirebirdMaker::cut(PortUnit& unit, ByteSpan bytes, GpsTime) {
     std::vector<StreamPiece> pieces;
-    for (const std::string& line : lines_.try_emplace(unit.id, longest_line).first->second.feed(bytes))
+    for (const std::string& line : lines_.try_emplace(unit.id, ufirebird_longest_line).first->second.feed(bytes))
         if (line.find('$') != std::string::npos) pieces.push_back({StreamKind::command, to_bytes(line)});
     return pieces;
 }

@@ -153,7 +153,8 @@ TEST(Casic, StandsByForSoLong) {
 TEST(Casic, AcknowledgesEachConfigurationFrame) {
     CasicReceiver receiver;
     EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x00}, {})),
-                ElementsAre("CASIC CFG-PRT port=0 protocols=51 mode=2240 baud=9600", acknowledged(0)));
+                ElementsAre("CASIC CFG-PRT port=0 protocols=51 mode=2240 baud=9600",
+                            "CASIC CFG-PRT port=1 protocols=51 mode=2240 baud=9600", acknowledged(0)));
     EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x04}, {})),
                 ElementsAre("CASIC CFG-RATE interval_s=1", acknowledged(4)));
     EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x01}, {})), SizeIs(16));

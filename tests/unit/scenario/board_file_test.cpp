@@ -24,8 +24,8 @@ const std::vector<fs::path> shipped_boards{fs::path(SKYLOOP_SOURCE_DIR) / "board
 
 // They speak another protocol.
 const std::vector<std::string> boards_without_sentences{"dronecan-generic", "dronecan-heading", "mavlink-gps-input",
-                                                        "msp-gps",          "septentrio-sbf",   "unicore-um980",
-                                                        "unicore-um982"};
+                                                        "msp-gps",          "quectel-lc29h-bs", "septentrio-sbf",
+                                                        "unicore-um980",    "unicore-um982"};
 
 std::string board_refusal(std::string_view text) {
     const auto board = read_board(text, "boards/receivers/test.toml");
@@ -68,7 +68,7 @@ TEST(BoardFile, TellsTheUsbPort) {
 
 TEST(BoardFile, EveryShippedBoardIsRead) {
     const auto names = list_boards(shipped_boards);
-    EXPECT_EQ(names.size(), 29U);
+    EXPECT_EQ(names.size(), 37U);
     for (const std::string& name : names) {
         const auto board = find_board(name, shipped_boards);
         ASSERT_TRUE(board) << board.error().message;
@@ -101,6 +101,13 @@ TEST(BoardFile, ShippedBoardsHaveTheMakersFactorySettings) {
     EXPECT_EQ(board("unicore-um980").maker, firmware::MakerKind::unicore);
     EXPECT_EQ(board("unicore-um982").identity.hardware, "UM982");
     EXPECT_EQ(board("unicore-um982").ports.size(), 3u);
+    EXPECT_EQ(board("casic-at6558").maker, firmware::MakerKind::casic);
+    EXPECT_TRUE(board("casic-at6558").style.one_gsv_list);
+    EXPECT_EQ(board("quectel-l76k").constellations.size(), 3u);
+    EXPECT_EQ(board("quectel-lg290p").maker, firmware::MakerKind::quectel);
+    EXPECT_EQ(board("quectel-lc29h-ea").baud, 460800U);
+    EXPECT_EQ(board("unicore-uc6580").maker, firmware::MakerKind::ufirebird);
+    EXPECT_EQ(board("airoha-ag3335").timing.command_sleep, Seconds(4));
     EXPECT_EQ(board("nmea-generic").baud, 9600U);
     EXPECT_EQ(board("nmea-generic").sentences.size(), 8U);
 }
