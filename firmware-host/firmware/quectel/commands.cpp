@@ -81,7 +81,7 @@ QuectelMaker::Verdict QuectelMaker::version(const Command& command) {
     return command.outcome.answers.empty() ? Verdict::unsupported : Verdict::said_already;
 }
 
-// "R[,1,n]" or "W,[1,n,]baud[,8,0,1,0]". What is changed is answered at the new speed, or not at all.
+// "R[,1,n]" or "W,[1,n,]baud[,8,0,1,0]". What changes the port's own speed is answered as the board's quirk says.
 QuectelMaker::Verdict QuectelMaker::port_speed(const Command& command) {
     std::vector<PortId> uarts;
     std::ranges::copy_if(board().ports, std::back_inserter(uarts), is_uart);
@@ -97,7 +97,8 @@ QuectelMaker::Verdict QuectelMaker::port_speed(const Command& command) {
     const auto baud = number_in<std::uint32_t>(command.field(named ? 3 : 1));
     if (!command.writes() || !baud || !takes_baud(board(), *baud)) return Verdict::wrong_parameter;
     settings().set(in_ram, SentenceSettings::baud(port), *baud);
-    return Verdict::ok;
+    command.outcome.verdict = to_bytes(Sentence(std::string(command.sentence.address) + ",OK").finish());
+    return Verdict::said_already;
 }
 
 QuectelMaker::Verdict QuectelMaker::fix_rate(const Command& command) {

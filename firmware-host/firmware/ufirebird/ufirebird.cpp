@@ -131,10 +131,8 @@ std::unique_ptr<Maker> make_ufirebird(const BoardProfile& board, const ReceiverO
 }
 
 Abilities ufirebird_abilities(const BoardProfile&) {
-    return {.choice = Abilities::MessageChoice::rates,
-            .time = true,
-            .calendar = true,
-            .more = {"OK", "FAIL", "PDTINFO", "CFGSYS"}};
+    return {
+        .choice = Abilities::MessageChoice::rates, .time = true, .calendar = true, .more = {"OK", "FAIL", "PDTINFO"}};
 }
 
 }  // namespace skyloop::firmware

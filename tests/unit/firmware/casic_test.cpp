@@ -4,6 +4,7 @@
 
 #include "dialogue_receiver.hpp"
 #include "receiver/protocol/casic_messages.hpp"
+#include "receiver/protocol/decoded_message.hpp"
 
 namespace skyloop::firmware {
 namespace {
@@ -68,8 +69,9 @@ TEST(Casic, SendsItsSentencesFromTheFactoryOn) {
     EXPECT_EQ(begins("$GBGSV,"), 0);
     EXPECT_EQ(begins("$GPTXT,01,01,01,ANTENNA OK*35"), 1);
     for (const std::string& line : lines) {
-        if (line.find("GSV,") != std::string::npos) EXPECT_THAT(line, testing::HasSubstr(",0*")) << "signal 0";
-        if (line.find("RMC,") != std::string::npos) EXPECT_THAT(line, testing::HasSubstr(",,,A,V*"));
+        const bool list = line.find("GSV,") != std::string::npos, rmc = line.find("RMC,") != std::string::npos;
+        EXPECT_TRUE(!list || line.find(",0*") != std::string::npos) << line << ": signal 0";
+        EXPECT_TRUE(!rmc || line.find(",,,A,V*") != std::string::npos) << line;
     }
 }
 
@@ -213,8 +215,9 @@ TEST(Casic, SetsTheNavigationEngine) {
 
 TEST(Casic, SendsBinaryMessages) {
     CasicReceiver receiver;
-    for (const std::uint8_t id : {0x01, 0x02, 0x03, 0x10, 0x20, 0x21, 0x22})
-        EXPECT_THAT(receiver.replies(rate_of(0x01, id, 1)), testing::Contains(acknowledged(1)));
+    for (const int id : {0x01, 0x02, 0x03, 0x10, 0x20, 0x21, 0x22})
+        EXPECT_THAT(receiver.replies(rate_of(0x01, static_cast<std::uint8_t>(id), 1)),
+                    testing::Contains(acknowledged(1)));
     receiver.wait(1s);
     receiver.forget();
     receiver.wait(1s);

@@ -133,7 +133,7 @@ TEST(CasicFrames, AreFoundAmongSentencesAndNoise) {
 
 TEST(CasicFrames, AreListed) {
     EXPECT_EQ(text_line(decode_piece({StreamKind::casic, bytes_of_digits(captured_time)})),
-              "CASIC NAV-TIMEUTC run_time_s=80253.992 t_variance_m2=4.2888098 rest_ms=-1.2949109e-05 millisecond=0 "
+              "CASIC NAV-TIMEUTC run_time_s=80252.968 t_variance_m2=4.28881 rest_ms=-1.2951205e-05 millisecond=0 "
               "year=2026 month=1 day=18 hour=3 minute=51 second=56 valid=7 time_source=0 date_valid=3");
     EXPECT_EQ(text_line(decode_piece({StreamKind::casic, bytes_of_digits(enable_pv)})),
               "CASIC CFG-MSG class=1 id=3 rate=1");

@@ -267,7 +267,9 @@ TEST(FindBoard, TakesTheNamesOfModules) {
         {"ZED-X20P", "ublox-x20p"},      {"NEO-F10N", "ublox-f10"},
         {"DAN-F10N", "ublox-f10"},       {"NEO-6M", "ublox-6"},
         {"mosaic-X5", "septentrio-sbf"}, {"PA6H", "mtk3339"},
-        {"MT3339", "mtk3339"},
+        {"MT3339", "mtk3339"},           {"AG3335", "airoha-ag3335"},
+        {"ATGM336H", "casic-at6558"},    {"L76K", "quectel-l76k"},
+        {"lg290p", "quectel-lg290p"},    {"UC6580", "unicore-uc6580"},
     };
     for (const auto& [alias, name] : aliases) {
         const auto board = find_board(alias, shipped_boards);
@@ -296,7 +298,7 @@ TEST(FindBoard, KnowsTheBoardThatAModuleHas) {
         {"m10", "ublox-m10"},         {"f9p", "ublox-f9p"},
         {"ZED-F9P-04", "ublox-f9p"},  {"NEO-M9", "ublox-m9"},
         {"x20p", "ublox-x20p"},       {"mosaic", "septentrio-sbf"},
-        {"AG3335", "airoha-ag33xx"},  {"septentrio", "septentrio-sbf"},
+        {"AG33", "airoha-ag33xx"},    {"septentrio", "septentrio-sbf"},
     };
     for (const auto& [name, board] : meant)
         EXPECT_EQ(find_board(name, shipped_boards).error().message,
