@@ -27,7 +27,7 @@ public:
         for (const GpsTime end = now_ + length; now_ < end;) {
             now_ += std::chrono::milliseconds(1);
             for (const Receiver::Sent& sent : receiver_.output(now_)) {
-                if (sent.baud != receiver_.baud(PortId::uart1)) ++at_other_speeds;
+                if (sent.port != PortId::uart1) continue;
                 for (StreamPiece& piece : splitter_.feed(sent.bytes))
                     pieces_.push_back(std::move(piece));
             }
@@ -69,7 +69,6 @@ public:
     [[nodiscard]] const BoardProfile& board() const { return board_; }
     [[nodiscard]] GpsTime now() const { return now_; }
     Epoch epoch_{test::driving_fix({})};
-    std::size_t at_other_speeds = 0;
 
 private:
     Receiver receiver_;

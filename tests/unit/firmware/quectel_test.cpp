@@ -107,7 +107,7 @@ TEST(Quectel, SendsSentencesOfItsOwn) {
     const auto pvt = receiver.lines("$PQTMPVT,1,");
     ASSERT_THAT(pvt, SizeIs(10));
     EXPECT_THAT(pvt[0], testing::MatchesRegex(
-                            "\\$PQTMPVT,1,[0-9]{9},20240305,1200[0-9]{2}\\.[0-9]00,,3,10,18,47\\.39770000,8\\.54560000,"
+                            "\\$PQTMPVT,1,[0-9]{9},20240305,1200[0-9]{2}\\.[0-9]00,,3,32,18,47\\.39770000,8\\.54560000,"
                             "441\\.000,47\\.000,8\\.000,1\\.000,.*"));
     EXPECT_EQ(std::ranges::count(pvt[0], ','), 19);
     const auto vel = receiver.lines("$PQTMVEL,1,");

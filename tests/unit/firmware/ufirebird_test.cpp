@@ -30,10 +30,10 @@ TEST(Uc6580, AnswersWithAndWithoutAChecksum) {
     Uc6580 receiver;
     const std::string told = "$PDTINFO,UC6580I-00,G1B1L1E1,V00,R6.1.1.1Build9074,2400615000514,20250427080308004*4D";
     EXPECT_THAT(after(receiver, "$PDTINFO"), Contains(told));
-    EXPECT_THAT(after(receiver, "$PDTINFO*62"), Contains(told));
+    EXPECT_THAT(after(receiver, "$PDTINFO*4E"), Contains(told));
     EXPECT_THAT(after(receiver, "$pdtinfo"), Contains(told));
     EXPECT_THAT(after(receiver, "garbage\xFF$PDTINFO"), Contains(told));
-    EXPECT_THAT(after(receiver, "$PDTINFO*63"), Contains("$FAIL,1*1F"));
+    EXPECT_THAT(after(receiver, "$PDTINFO*00"), Contains("$FAIL,1*1F"));
     EXPECT_THAT(after(receiver, "$CFGSYS"), Contains("$CFGSYS,H55155*4E"));
 }
 
