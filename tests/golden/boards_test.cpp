@@ -130,6 +130,7 @@ BoardProfile with_everything(BoardProfile board) {
     board.transmit_buffer_bytes = board.generated_ahead_bytes = 1 << 20;
     board.sbf_blocks.clear();
     board.can.node_id = 42;
+    if (board.maker == MakerKind::quectel) board.default_rate_hz = 1;  // ten times as many lines would tell no more
     if (board.maker == MakerKind::sbf)
         KnownSbfBlocks::any([&]<class Block>() {
             board.sbf_blocks.emplace_back(Block::message_name);
