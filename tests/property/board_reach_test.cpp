@@ -125,8 +125,13 @@ Bytes first_setting(MakerKind personality) {
     if (personality == MakerKind::unicore)
         return to_bytes("AGRICA 1\r\nUNIHEADINGA 1\r\nRECTIMEA 1\r\nPVTSLNA 1\r\nOBSVMA 1\r\n");
     if (personality == MakerKind::dronecan) return requested(gps_type(17), 31);
-    if (personality == MakerKind::casic) return encode_casic_frame({0x06, 0x01}, Bytes{0x01, 0x03, 1, 0});  // NAV-PV
-    if (personality == MakerKind::quectel) return spoken("PQTMCFGMSGRATE,W,PQTMPVT,1,1");
+    if (personality == MakerKind::casic) return encode_casic_frame({0x06, 0x01}, Bytes{0x01, 0x02, 1, 0});  // NAV-SOL
+    if (personality == MakerKind::quectel) {
+        Bytes both = spoken("PQTMCFGMSGRATE,W,PQTMEOE,1,1");
+        const Bytes of_airoha = spoken("PAIR062,1,0");
+        both.insert(both.end(), of_airoha.begin(), of_airoha.end());
+        return both;
+    }
     if (personality == MakerKind::ufirebird) return to_bytes("$CFGMSG,0,1,0\r\n");
     return spoken("PUBX,40,GSV,0,0,0,0");
 }

@@ -152,7 +152,7 @@ std::unique_ptr<Maker> make_quectel(const BoardProfile& board, const ReceiverOpt
 Abilities quectel_abilities(const BoardProfile& board) {
     return {.choice = Abilities::MessageChoice::rates,
             .accuracies = true,
-            .weeks = true,
+            .weeks = !is_base_module(board),
             .time = true,
             .calendar = true,
             .dead_reckoning = false,

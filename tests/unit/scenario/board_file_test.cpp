@@ -246,11 +246,11 @@ TEST(FindBoard, RefusesUnknownNames) {
     ASSERT_FALSE(board);
     EXPECT_EQ(board.error().code, ErrorCode::usage);
     EXPECT_EQ(board.error().message, "board 'ublox-m88' is not known; did you mean 'ublox-m8'?");
-    EXPECT_THAT(
-        find_board("nope", shipped_boards).error().message,
-        AllOf(HasSubstr("board 'nope' is not known; expected one of airoha-ag33xx, dronecan-generic, dronecan-heading, "
-                        "mavlink-gps-input, msp-gps"),
-              HasSubstr(", ublox-m9, ublox-m9-spg450, ublox-max-m10s, ")));
+    EXPECT_THAT(find_board("nope", shipped_boards).error().message,
+                AllOf(HasSubstr("board 'nope' is not known; expected one of airoha-ag3335, airoha-ag33xx, "
+                                "casic-at6558, dronecan-generic, dronecan-heading, "
+                                "mavlink-gps-input, msp-gps"),
+                      HasSubstr(", ublox-m9, ublox-m9-spg450, ublox-max-m10s, ")));
     EXPECT_FALSE(find_board("../receivers/ublox-m8", shipped_boards));
     const std::vector<fs::path> nowhere{"/no/such/folder"};
     EXPECT_THAT(find_board("ublox-m8", nowhere).error().message, HasSubstr("searched: /no/such/folder"));
