@@ -110,7 +110,7 @@ class CasicTool(Client):
         self.set(0x04, struct.pack("<HH", 1000, 0))
         self.follow(self.collect(6))
         self.step("what it does not know")
-        for message, payload in ((0x01, b"\x01\x03"), (0x33, bytes(4)), (0x04, struct.pack("<HH", 77, 0))):
+        for message, payload in ((0x01, bytes(8)), (0x33, bytes(4)), (0x04, struct.pack("<HH", 77, 0))):
             self.set(message, payload, 0x0500)
         self.set(0x05, struct.pack("<HBB", 0xFFFF, 1, 0))
         self.step("saved")
@@ -184,7 +184,7 @@ class GpsdCasic(CasicTool):
         self.set(0x01, struct.pack("<BBH", 1, 3, 1))
         self.set(0x00, struct.pack("<BBHI", 0xFF, mask & 0x03 | 0x10, 0x08C0, self.first_speed))
         self.step("binary alone")
-        items = self.collect(4)[4:]
+        items = self.collect(5)[1:]
         self.check(items and all(item.number for item in items), "frames alone", [str(item) for item in items[:5]])
         self.send(nmea.sentence("PCAS01,5"), "$PCAS01,5")
         self.pump(0.1)
