@@ -3,11 +3,14 @@
 #include <array>
 
 #include "firmware/airoha/airoha.hpp"
+#include "firmware/casic/casic.hpp"
 #include "firmware/dronecan/dronecan.hpp"
 #include "firmware/mediatek/mediatek.hpp"
 #include "firmware/output_only/output_only.hpp"
+#include "firmware/quectel/quectel.hpp"
 #include "firmware/septentrio/septentrio.hpp"
 #include "firmware/ublox/ublox.hpp"
+#include "firmware/ufirebird/ufirebird.hpp"
 #include "firmware/unicore/unicore.hpp"
 
 namespace skyloop::firmware {
@@ -25,6 +28,9 @@ constexpr auto all_makers = std::to_array<MakerRow>({
     {"sbf", make_septentrio, septentrio_abilities},
     {"unicore", make_unicore, unicore_abilities},
     {"dronecan", make_dronecan, dronecan_abilities},
+    {"casic", make_casic, casic_abilities},
+    {"quectel", make_quectel, quectel_abilities},
+    {"ufirebird", make_ufirebird, ufirebird_abilities},
 });
 
 }  // namespace

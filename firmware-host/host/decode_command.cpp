@@ -65,13 +65,14 @@ void name_config_keys(DecodedMessage& message) {
     }
 }
 
-constexpr std::array<StreamKind, 8> all_kinds{StreamKind::ubx,     StreamKind::nmea,    StreamKind::rtcm3,
+constexpr std::array<StreamKind, 9> all_kinds{StreamKind::ubx,     StreamKind::nmea,    StreamKind::rtcm3,
                                               StreamKind::msp,     StreamKind::mavlink, StreamKind::sbf,
-                                              StreamKind::unicore, StreamKind::can};
+                                              StreamKind::unicore, StreamKind::can,     StreamKind::casic};
 // What switches each of these on.
-constexpr std::array<bool StreamProtocols::*, 8> protocol_flags{
-    &StreamProtocols::ubx,     &StreamProtocols::nmea, &StreamProtocols::rtcm3,   &StreamProtocols::msp,
-    &StreamProtocols::mavlink, &StreamProtocols::sbf,  &StreamProtocols::unicore, &StreamProtocols::can};
+constexpr std::array<bool StreamProtocols::*, 9> protocol_flags{
+    &StreamProtocols::ubx,     &StreamProtocols::nmea,    &StreamProtocols::rtcm3,
+    &StreamProtocols::msp,     &StreamProtocols::mavlink, &StreamProtocols::sbf,
+    &StreamProtocols::unicore, &StreamProtocols::can,     &StreamProtocols::casic};
 
 // A tty that is silent for so long has sent all of its frame (RECEIVER.md 1.3).
 constexpr std::chrono::seconds frame_silence{2};
@@ -239,7 +240,7 @@ Result<void> decode_stream(InputStream& input, const std::string& path, Decoder&
 std::string nothing_in(const DecodeOptions& options, const std::string& name, std::uint64_t bytes) {
     const bool any = is_automatic(options.protocols);
     return fmt::format("{}: no message of {} in its {} bytes{}", name,
-                       any ? "UBX, NMEA, RTCM 3, MSP, MAVLink, SBF, Unicore or DroneCAN"
+                       any ? "UBX, NMEA, RTCM 3, MSP, MAVLink, SBF, Unicore, DroneCAN or CASIC"
                            : fmt::format("{}", fmt::join(options.protocols, " or ")),
                        bytes, options.input == "-" ? "; what is packed is unpacked from files alone" : "");
 }
@@ -276,18 +277,19 @@ int decode(const DecodeOptions& options) {
 Action add_decode_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("decode",
-                           "The messages of a UBX, NMEA, RTCM 3, MSP, MAVLink, SBF, Unicore or DroneCAN (SLCAN, "
-                           "candump) stream as text or JSON lines");
+                           "The messages of a UBX, NMEA, RTCM 3, MSP, MAVLink, SBF, Unicore, CASIC or DroneCAN "
+                           "(SLCAN, candump) stream as text or JSON lines");
     auto options = std::make_shared<DecodeOptions>();
     command->add_option("FILE", options->input, "File (also .gz, .zip, …), tty or pipe; default: -, standard input");
     command->add_option("--format", options->format, "text or json")->check(CLI::IsMember({"text", "json"}));
     command
-        ->add_option("--protocol", options->protocols,
-                     "What to look for, separated by commas: ubx nmea rtcm3 msp mavlink sbf unicore can; default: "
-                     "auto, all of them")
+        ->add_option(
+            "--protocol", options->protocols,
+            "What to look for, separated by commas: ubx nmea rtcm3 msp mavlink sbf unicore can casic; default: "
+            "auto, all of them")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"auto", "ubx", "nmea", "rtcm3", "msp", "mavlink", "sbf", "unicore", "can"}));
+        ->check(CLI::IsMember({"auto", "ubx", "nmea", "rtcm3", "msp", "mavlink", "sbf", "unicore", "can", "casic"}));
     add_verbosity_options(*command, options->verbosity);
     return [options] { return decode(*options); };
 }

@@ -2,10 +2,13 @@
 import adafruit
 import ardupilot
 import betaflight
+import casic
 import gpsd_probes
 import inav
 import kumar_ros
+import meshtastic
 import px4
+import quectel
 import septentrio
 import sparkfun
 import tracker
@@ -22,9 +25,13 @@ CLIENTS = {
     "betaflight": betaflight.Betaflight,
     "ardupilot_unicore": unicore.ArduPilotUnicore,
     "ardupilot_unicore_moving": unicore.ArduPilotUnicoreMoving,
+    "casictool": casic.CasicTool,
+    "gpsd_casic": casic.GpsdCasic,
     "gpsd_probes": gpsd_probes.GpsdProbes,
     "inav": inav.Inav,
     "kumar_ros": kumar_ros.KumarRos,
+    "meshtastic": meshtastic.Meshtastic,
+    "meshtastic_airoha": meshtastic.MeshtasticAiroha,
     "px4": px4.Px4,
     "px4_9600": px4.Px4At9600,
     "px4_gps_sbf": septentrio.Px4GpsSbf,
@@ -37,6 +44,7 @@ CLIENTS = {
     "ros_septentrio": septentrio.RosSeptentrio,
     "rtkbase_unicore": unicore.RtkBase,
     "sparkfun": sparkfun.SparkFun,
+    "sparkfun_lg290p": quectel.SparkFunLg290p,
     "sparkfun_unicore": unicore.SparkFunUnicore,
     "tracker": tracker.Tracker,
     "u_center": u_center.UCenter,

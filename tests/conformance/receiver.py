@@ -58,6 +58,11 @@ BOARDS = {board.name: board for board in (
     Board("septentrio-sbf", 115200),
     Board("unicore-um980", 115200),
     Board("unicore-um982", 115200),
+    Board("unicore-uc6580", 115200),
+    Board("airoha-ag3335", 115200),
+    Board("casic-at6558", 9600),
+    Board("quectel-l76k", 9600),
+    Board("quectel-lg290p", 460800),
 )}
 
 

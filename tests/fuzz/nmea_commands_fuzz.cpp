@@ -48,7 +48,7 @@ void talk_to(MakerKind kind, const std::vector<std::string>& lines) {
         // The checksum of a mutated line is seldom right: its body counts.
         const Bytes whole = to_bytes(Sentence(line.substr(1, line.rfind('*') - 1)).finish());
         for (const PortId port : {PortId::uart1, PortId::usb})
-            check_answers(maker->receive({StreamKind::nmea, whole},
+            check_answers(maker->receive({kind == MakerKind::ufirebird ? StreamKind::command : StreamKind::nmea, whole},
                                          {port, {}, sound, state.time, {board, maker->config(), state, {}, port}}));
     }
     check_settings(*maker, board);
@@ -63,7 +63,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<std::string> lines;
     for (std::string line; std::getline(stream, line);)
         lines.push_back(line);
-    for (const MakerKind kind : {MakerKind::mute, MakerKind::ublox, MakerKind::mtk, MakerKind::airoha})
+    for (const MakerKind kind : {MakerKind::mute, MakerKind::ublox, MakerKind::mtk, MakerKind::airoha, MakerKind::casic,
+                                 MakerKind::quectel, MakerKind::ufirebird})
         talk_to(kind, lines);
     return 0;
 }

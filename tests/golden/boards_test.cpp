@@ -14,6 +14,7 @@
 
 #include "base/core/bytes.hpp"
 #include "firmware/ublox/config/config_keys.hpp"
+#include "receiver/protocol/casic_frame.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 #include "receiver/protocol/known_sbf.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
@@ -129,6 +130,7 @@ BoardProfile with_everything(BoardProfile board) {
     board.transmit_buffer_bytes = board.generated_ahead_bytes = 1 << 20;
     board.sbf_blocks.clear();
     board.can.node_id = 42;
+    if (board.maker == MakerKind::quectel) board.default_rate_hz = 1;  // ten times as many lines would tell no more
     if (board.maker == MakerKind::sbf)
         KnownSbfBlocks::any([&]<class Block>() {
             board.sbf_blocks.emplace_back(Block::message_name);
@@ -153,6 +155,34 @@ void switch_everything_on(ReceiverRig& rig) {
     EXPECT_TRUE(configured) << configured.error().message;
 }
 
+void ask_newer_makers(ReceiverRig& rig) {
+    const BoardProfile board = rig.receiver().board();
+    const auto say = [&](const Bytes& bytes) {
+        rig.write(bytes);
+        rig.run(100ms);
+    };
+    if (board.maker == MakerKind::casic) {
+        for (const int id : {0x00, 0x01, 0x04, 0x07, 0x02})
+            say(encode_casic_frame({0x06, static_cast<std::uint8_t>(id)}, {}));
+        for (const int id : {0x01, 0x02, 0x03, 0x10, 0x20, 0x21, 0x22})
+            say(encode_casic_frame({0x06, 0x01}, Bytes{0x01, static_cast<std::uint8_t>(id), 0xFF, 0xFF}));
+        for (const char* const question : {"PCAS06,0", "PCAS06,1", "PCAS06,2", "PCAS06,5"})
+            say(to_bytes(Sentence(question).finish()));
+    }
+    if (board.maker == MakerKind::quectel) {
+        for (const char* const question :
+             {"PQTMVERNO", "PQTMUNIQID", "PQTMCFGUART,R", "PQTMCFGFIXRATE,R", "PQTMCFGCNST,R", "PQTMCFGRCVRMODE,R",
+              "PQTMCFGSVIN,R", "PQTMCFGPPS,R,1", "PQTMVER", "PQTMCFGMSGRATE,W,PQTMEPE,1,2",
+              "PQTMCFGMSGRATE,W,PQTMVEL,1,1", "PQTMCFGMSGRATE,W,PQTMPVT,1,1", "PQTMCFGMSGRATE,W,PQTMDOP,1,1",
+              "PQTMCFGMSGRATE,W,PQTMEOE,1,1"})
+            say(to_bytes(Sentence(question).finish()));
+        rig.run(1s);
+    }
+    if (board.maker == MakerKind::ufirebird)
+        for (const char* const line : {"$PDTINFO\r\n", "$CFGSYS\r\n", "$CFGMSG,0,1,0\r\n", "$PDTINFO*00\r\n"})
+            say(to_bytes(line));
+}
+
 void ask_everything(ReceiverRig& rig) {
     const BoardProfile board = rig.receiver().board();
     if (board.maker == MakerKind::ublox) {
@@ -172,6 +202,7 @@ void ask_everything(ReceiverRig& rig) {
             rig.write(to_bytes(line));
             rig.run(100ms);
         }
+    ask_newer_makers(rig);
     if (board.maker != MakerKind::sbf) return;
     for (const char* const line : {"getReceiverCapabilities\n", "getSBFOutput\n", "getCOMSettings\n", "exeTea\n"}) {
         rig.write(to_bytes(line));
@@ -186,8 +217,13 @@ std::vector<StreamPiece> stream_of(const std::string& name) {
     rig.world = [&](GpsTime time) { return golden_epoch(time, index++); };
     rig.run(3s);
     ask_everything(rig);
-    const bool node = board_named(name).maker == MakerKind::dronecan;
-    StreamSplitter every_protocol({.msp = true, .mavlink = true, .sbf = true, .unicore = true, .can = node});
+    const MakerKind maker = board_named(name).maker;
+    StreamSplitter every_protocol({.msp = true,
+                                   .mavlink = true,
+                                   .sbf = true,
+                                   .unicore = true,
+                                   .can = maker == MakerKind::dronecan,
+                                   .casic = maker == MakerKind::casic});
     Bytes stream;
     for (const Heard& heard : rig.heard())
         stream.insert(stream.end(), heard.piece.bytes.begin(), heard.piece.bytes.end());

@@ -11,6 +11,7 @@
 #include "base/core/can_frame.hpp"
 #include "firmware/core/port_id.hpp"
 #include "firmware/ublox/config/config_keys.hpp"
+#include "receiver/protocol/casic_frame.hpp"
 #include "receiver/protocol/dronecan_transfer.hpp"
 #include "receiver/protocol/rtcm3.hpp"
 #include "receiver/protocol/ubx_cfg.hpp"
@@ -41,7 +42,8 @@ BoardProfile eager_board(const std::string& name) {
     board.quirks.default_interference_monitor = true;
     board.timing.answer = Seconds(0.001);
     if (board.maker == MakerKind::sbf) board.sbf_blocks = {"PVTGeodetic", "AttEuler", "RFStatus", "ReceiverTime"};
-    if (board.maker == MakerKind::mtk || board.maker == MakerKind::airoha || board.maker == MakerKind::unicore) {
+    if (board.maker == MakerKind::mtk || board.maker == MakerKind::airoha || board.maker == MakerKind::unicore ||
+        board.maker == MakerKind::casic || board.maker == MakerKind::quectel || board.maker == MakerKind::ufirebird) {
         board.sentences.clear();
         for (std::size_t i = 0; i < std::size(firmware::nmea_sentence_names); ++i)
             board.sentences.push_back({static_cast<firmware::NmeaSentence>(i), 1});
@@ -123,6 +125,14 @@ Bytes first_setting(MakerKind personality) {
     if (personality == MakerKind::unicore)
         return to_bytes("AGRICA 1\r\nUNIHEADINGA 1\r\nRECTIMEA 1\r\nPVTSLNA 1\r\nOBSVMA 1\r\n");
     if (personality == MakerKind::dronecan) return requested(gps_type(17), 31);
+    if (personality == MakerKind::casic) return encode_casic_frame({0x06, 0x01}, Bytes{0x01, 0x02, 1, 0});  // NAV-SOL
+    if (personality == MakerKind::quectel) {
+        Bytes both = spoken("PQTMCFGMSGRATE,W,PQTMEOE,1,1");
+        const Bytes of_airoha = spoken("PAIR062,1,0");
+        both.insert(both.end(), of_airoha.begin(), of_airoha.end());
+        return both;
+    }
+    if (personality == MakerKind::ufirebird) return to_bytes("$CFGMSG,0,1,0\r\n");
     return spoken("PUBX,40,GSV,0,0,0,0");
 }
 
@@ -146,6 +156,12 @@ std::vector<Bytes> said_each_second(MakerKind personality, int second) {
             return {to_bytes("VERSIONA\r\n"), encode(Rtcm3Station{})};
         case MakerKind::dronecan:
             return {requested(gps_type({}), second)};
+        case MakerKind::casic:
+            return {spoken("PCAS06,0"), encode_casic_frame({0x06, 0x00}, {})};
+        case MakerKind::quectel:
+            return {spoken("PQTMVERNO"), encode(Rtcm3Station{})};
+        case MakerKind::ufirebird:
+            return {to_bytes("$PDTINFO\r\n")};
         default:
             return {version, spoken("PMTK605"), to_bytes("grc\n")};
     }
@@ -153,7 +169,7 @@ std::vector<Bytes> said_each_second(MakerKind personality, int second) {
 
 struct Play {
     std::string bytes;  // with the instants at which they left
-    StreamSplitter splitter{StreamProtocols{.msp = true, .mavlink = true, .sbf = true, .unicore = true}};
+    StreamSplitter splitter{StreamProtocols{.msp = true, .mavlink = true, .sbf = true, .unicore = true, .casic = true}};
     std::vector<StreamPiece> pieces;
     std::set<Constellation> systems;
 };

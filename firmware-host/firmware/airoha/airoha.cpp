@@ -155,13 +155,43 @@ void set_pair_speed(PairCommand& c) {
     c.acknowledge(PairResult::done);
 }
 
+// 382: keeps the system from sleeping. Not emulated beyond the sleep after a start.
+void lock_sleep(PairCommand& c) { c.acknowledge(c.argument_within(0, 0, 1) ? PairResult::done : PairResult::failed); }
+
 constexpr CommandRow<PairCommand> pair_rows[] = {
-    {2, switch_positioning}, {3, switch_positioning},   {4, restart_pair},           {5, restart_pair},
-    {6, restart_pair},       {7, restart_pair},         {20, tell_pair_version},     {21, tell_pair_version},
-    {50, set_fix_interval},  {51, tell_fix_interval},   {62, set_sentence_rate},     {63, tell_sentence_rate},
-    {66, set_pair_systems},  {80, set_navigation_mode}, {400, set_pair_corrections}, {410, set_pair_sbas},
-    {513, save_pair},        {864, set_pair_speed},
+    {2, switch_positioning}, {3, switch_positioning},   {4, restart_pair},       {5, restart_pair},
+    {6, restart_pair},       {7, restart_pair},         {20, tell_pair_version}, {21, tell_pair_version},
+    {50, set_fix_interval},  {51, tell_fix_interval},   {62, set_sentence_rate}, {63, tell_sentence_rate},
+    {66, set_pair_systems},  {80, set_navigation_mode}, {382, lock_sleep},       {400, set_pair_corrections},
+    {410, set_pair_sbas},    {513, save_pair},          {864, set_pair_speed},
 };
+
+// Its command processor sleeps for a while after a start, while sentences flow: hosts repeat PAIR382,1 until that is
+// acknowledged (meshtastic/firmware, variants/nrf52840/tracker-t1000-e).
+class AirohaMaker : public NumberedCommandMaker {
+public:
+    AirohaMaker(const BoardProfile& board, const ReceiverOptions& options)
+        : NumberedCommandMaker(board, options, execute_pair), asleep_(options.power_up && has_sleep()) {}
+
+    CommandOutcome receive(const StreamPiece& piece, const Situation& asked) override {
+        if (asleep_ && !to_string(piece.bytes).starts_with("$PAIR382,1*")) return {};
+        asleep_ = false;
+        return NumberedCommandMaker::receive(piece, asked);
+    }
+    void follow(const NavigationState& state, GpsTime) override {
+        if (state.since_boot >= board().timing.command_sleep) asleep_ = false;
+    }
+    void restart(bool keeps_ram) override {
+        asleep_ = has_sleep();
+        NumberedCommandMaker::restart(keeps_ram);
+    }
+
+private:
+    [[nodiscard]] bool has_sleep() const { return board().timing.command_sleep > Seconds(0); }
+    bool asleep_;
+};
+
+}  // namespace
 
 CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& board, SentenceSettings& store,
                             PortId from) {
@@ -176,10 +206,8 @@ CommandOutcome execute_pair(const SentenceView& sentence, const BoardProfile& bo
     return command.outcome;
 }
 
-}  // namespace
-
 std::unique_ptr<Maker> make_airoha(const BoardProfile& board, const ReceiverOptions& options) {
-    return std::make_unique<NumberedCommandMaker>(board, options, execute_pair);
+    return std::make_unique<AirohaMaker>(board, options);
 }
 
 Abilities airoha_abilities(const BoardProfile&) {

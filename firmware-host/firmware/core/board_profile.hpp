@@ -42,16 +42,19 @@ struct SentenceRate {
 
 /// Whose commands a receiver understands, or which protocol other than NMEA and UBX it speaks, without taking commands.
 enum class MakerKind {
-    mute,     ///< nobody's
-    ublox,    ///< UBX and PUBX
-    mtk,      ///< MediaTek PMTK
-    airoha,   ///< Airoha PAIR
-    msp,      ///< MSP2_SENSOR_GPS of the MultiWii Serial Protocol
-    msp_v1,   ///< its older MSP_SET_RAW_GPS
-    mavlink,  ///< MAVLink GPS_INPUT
-    sbf,      ///< Septentrio's blocks
-    unicore,  ///< Unicore's text commands, its logs in ASCII and binary
-    dronecan  ///< a node of DroneCAN
+    mute,      ///< nobody's
+    ublox,     ///< UBX and PUBX
+    mtk,       ///< MediaTek PMTK
+    airoha,    ///< Airoha PAIR
+    msp,       ///< MSP2_SENSOR_GPS of the MultiWii Serial Protocol
+    msp_v1,    ///< its older MSP_SET_RAW_GPS
+    mavlink,   ///< MAVLink GPS_INPUT
+    sbf,       ///< Septentrio's blocks
+    unicore,   ///< Unicore's text commands, its logs in ASCII and binary
+    dronecan,  ///< a node of DroneCAN
+    casic,     ///< CASIC's PCAS and binary frames
+    quectel,   ///< Quectel's PQTM, and PAIR of those with Airoha's chips
+    ufirebird  ///< Unicore's UFirebird chips: CFGSYS, CFGMSG, PDTINFO
 };
 
 /// At which speed the answer leaves to a message that changes the speed of the port it came by.
@@ -97,6 +100,7 @@ struct Timing {
     Seconds flash_write{0.1};                                ///< more for what is saved
     Seconds signal_restart{0.5};                             ///< without output after a change of the tracked signals
     Seconds latency_deviation{0};                            ///< 1 σ of the solution latency
+    Seconds command_sleep{0};                                ///< after a start, in which PAIR382,1 alone is heard
     Seconds coasting{0};                                     ///< for which a lost solution goes on by its velocity
     Seconds cold_start{26}, warm_start{24}, hot_start{1.5};  ///< to the first fix (RECEIVER.md 4.8)
 };
@@ -213,6 +217,7 @@ struct NmeaStyle {
     /// Lists have what is tracked alone: GSV no satellites without a signal, GSA no systems without one in use. Without
     /// any there is one sentence of GP, that of GSA without a mode and that of GSV with the fields of one satellite.
     bool tracked_only = false;
+    bool one_gsv_list = false;         ///< GSV has one list of each system, of signal 0 from 4.10 on (CASIC)
     std::string station_field;         ///< of GGA without corrections: empty, or "0000"
     std::string beidou_talker = "GB";  ///< or "BD"
     std::string qzss_talker = "GQ";    ///< or "QZ"; of versions in which QZSS has its own

@@ -124,6 +124,7 @@ bool Receiver::Core::accepts(PortId port, StreamKind kind) const {
     if (!config.on) return false;
     switch (kind) {
         case StreamKind::ubx:
+        case StreamKind::casic:
             return config.in.ubx;
         case StreamKind::nmea:
             return config.in.nmea;

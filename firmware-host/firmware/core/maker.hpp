@@ -91,6 +91,8 @@ public:
     /// Grows with every change of config().
     [[nodiscard]] virtual std::uint64_t revision() const = 0;
 
+    /// What its receivers' ports find in what they receive, beside UBX, sentences and RTCM 3.
+    [[nodiscard]] virtual StreamProtocols hears() const { return {}; }
     /// Cuts what a port receives into whole pieces, command lines among them.
     virtual std::vector<StreamPiece> cut(PortUnit& unit, ByteSpan bytes, GpsTime now);
     /// Whether a port's frames may stand inside others that were never finished: not on a command line.

@@ -1,5 +1,6 @@
 #include "firmware/core/parts.hpp"
 
+#include "receiver/protocol/casic_frame.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 
 namespace skyloop::firmware {
@@ -16,14 +17,14 @@ BoardProfile with_sentences(BoardProfile board) {
 
 UbxMessageId protocol_of(const Bytes& message) {
     constexpr std::uint8_t rtcm3_sync = 0xD3;
-    if (message.front() == ubx_sync_1) return {};
+    if (message.front() == ubx_sync_1 || message.front() == casic_sync_1) return {};
     return {message.front() == rtcm3_sync ? class_rtcm : class_nmea, 0};
 }
 
 ReceiverParts::ReceiverParts(BoardProfile profile, const ReceiverOptions& options, const MakerRow& row)
     : board(with_sentences(std::move(profile))), maker(row.make(board, options)) {
     for (const PortId port : board.ports)
-        units.emplace_back(port, config().port(port).baud, board);
+        units.emplace_back(port, config().port(port).baud, board, maker->hears());
 }
 
 void ReceiverParts::look_at_ports() {
@@ -59,7 +60,7 @@ void ReceiverParts::send_text(int level, const std::string& text, GpsTime now) {
 void ReceiverParts::restart_ports() {
     for (PortUnit& unit : units) {
         const PortTotals totals = unit.totals;
-        unit = PortUnit(unit.id, config().port(unit.id).baud, board);
+        unit = PortUnit(unit.id, config().port(unit.id).baud, board, maker->hears());
         unit.totals = totals;
     }
 }

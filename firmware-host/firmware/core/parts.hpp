@@ -39,7 +39,7 @@ struct ReceiverParts {
     void restart_ports();
 };
 
-/// What a ready message is, by what it begins with: its class alone, of UBX none.
+/// What a ready message is, by what it begins with: its class alone, of UBX and CASIC none.
 UbxMessageId protocol_of(const Bytes& message);
 
 }  // namespace skyloop::firmware

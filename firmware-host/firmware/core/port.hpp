@@ -84,15 +84,19 @@ private:
 
 /// Both directions of one port, and what is counted of them.
 struct PortUnit {
-    PortUnit(PortId port, std::uint32_t baud, const BoardProfile& board)
-        : id(port), transmit(baud, board.transmit_buffer_bytes, board.generated_ahead_bytes), configured_baud(baud) {
+    PortUnit(PortId port, std::uint32_t baud, const BoardProfile& board, StreamProtocols heard = {})
+        : id(port),
+          transmit(baud, board.transmit_buffer_bytes, board.generated_ahead_bytes),
+          hears(heard),
+          configured_baud(baud) {
         status.id = port;
     }
     /// What came of something that is not yet whole.
-    void forget_input() { splitter = {}; }
+    void forget_input() { splitter = PatientSplitter(hears); }
     PortId id;
     Port transmit;
-    PatientSplitter splitter{};  ///< finds what clients send: UBX, sentences and RTCM 3
+    StreamProtocols hears;
+    PatientSplitter splitter{hears};  ///< finds what clients send
     PortStatus status;
     PortTotals totals{};
     GpsTime last_input{};

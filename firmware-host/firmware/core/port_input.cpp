@@ -20,6 +20,7 @@ void count_input(PortStatus& status, const StreamPiece& piece) {
             ++status.messages_in[2];
             break;
         case StreamKind::command:
+        case StreamKind::casic:
             break;
         default:
             status.skipped += static_cast<std::uint32_t>(piece.bytes.size());

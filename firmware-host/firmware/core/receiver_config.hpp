@@ -97,7 +97,7 @@ struct PowerSaveSettings {
 
 /// Which protocols pass a port in one direction.
 struct PortProtocols {
-    bool ubx = true, nmea = true, rtcm3 = false;
+    bool ubx = true, nmea = true, rtcm3 = false;  ///< `ubx`: or what else its maker has for frames
 };
 
 struct PortConfig {

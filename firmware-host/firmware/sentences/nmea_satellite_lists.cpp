@@ -80,7 +80,7 @@ std::vector<ListedSatellite> untracked_ones(const NmeaReport& r, const NmeaGroup
 SignalGroups lists_of(const NmeaReport& r, const NmeaGroup& group) {
     SignalGroups signals = tracked_signals(r, group);
     if (r.context.board.style.tracked_only) return signals;
-    if (r.format.version < NmeaVersion::v4_10) {
+    if (r.format.version < NmeaVersion::v4_10 || r.context.board.style.one_gsv_list) {
         std::vector<ListedSatellite> strongest;
         for (const SatelliteStatus& s : r.satellites)
             if (r.belongs(s.id, group)) strongest.push_back({s.id, s.cn0});

@@ -41,6 +41,7 @@ const ReceiverConfig& SentenceMaker::config() const {
     if (config_revision_ == settings_.revision()) return config_;
     config_ = settings_.config();
     config_.reports_dead_reckoning = reports_dead_reckoning_;
+    adjust(config_);
     config_revision_ = settings_.revision();
     return config_;
 }

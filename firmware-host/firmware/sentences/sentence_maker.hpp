@@ -45,6 +45,9 @@ public:
 
 protected:
     [[nodiscard]] SentenceSettings& settings() { return settings_; }
+    [[nodiscard]] const SentenceSettings& settings() const { return settings_; }
+    /// Puts in what a maker's own settings say, after all the others.
+    virtual void adjust(ReceiverConfig&) const {}
 
 private:
     SentenceSettings settings_;

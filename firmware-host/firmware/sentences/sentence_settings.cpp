@@ -19,8 +19,6 @@ ConfigValues factory_values(const BoardProfile& board, const ReceiverOptions& op
                             std::span<const OwnSetting> own) {
     const ReceiverConfig factory = factory_settings(board, options);
     ConfigValues values;
-    for (const OwnSetting& setting : own)
-        values[setting.key] = setting.factory;
     values[Settings::fix_interval_ms] = measurement_period_ms(board, options.rate_hz);
     values[Settings::dynamic_model] = static_cast<std::uint64_t>(factory.limits.dynamic_model);
     values[Settings::held_below_cmps] =
@@ -36,6 +34,8 @@ ConfigValues factory_values(const BoardProfile& board, const ReceiverOptions& op
         for (std::size_t sentence = 0; sentence < std::size(nmea_sentence_names); ++sentence)
             values[Settings::rate(sentence, port)] = factory_rate(board, sentence);
     }
+    for (const OwnSetting& setting : own)
+        values[setting.key] = setting.factory;
     return values;
 }
 

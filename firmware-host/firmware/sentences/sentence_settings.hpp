@@ -14,7 +14,7 @@ namespace skyloop::firmware {
 
 /// A setting that receivers of one maker have besides.
 struct OwnSetting {
-    std::uint32_t key = 0;  ///< 5000 and up
+    std::uint32_t key = 0;  ///< 5000 and up, or of one that all have, whose factory value differs
     std::string_view name;
     std::uint64_t factory = 0;
 };

@@ -3,9 +3,8 @@
 #include <string>
 
 #include "firmware/core/port_id.hpp"
+#include "firmware/messages/station_messages.hpp"
 #include "firmware/unicore/logs.hpp"
-#include "receiver/protocol/rtcm3.hpp"
-#include "receiver/protocol/rtcm3_descriptors.hpp"
 #include "receiver/protocol/unicore_frame.hpp"
 
 namespace skyloop::firmware {
@@ -23,35 +22,12 @@ std::vector<Bytes> log_of(const Message& message, const UnicoreLogKind& kind, co
         return {};
 }
 
-// 1006 is 1005 and the height of the antenna above the marker, which is 0 here; 1033 says who sends.
-std::vector<Bytes> unicore_rtcm_messages(const UnicoreLogKind& kind, EpochMessages& made, PortId port,
-                                         std::span<const UbxMessageId> following) {
-    constexpr std::uint8_t id_1005 = 5, id_1006 = 6, id_1033 = 33;
-    if (kind.id.id == id_1006) {
-        std::vector<Bytes> frames = made.of({class_rtcm, id_1005}, port, following);
-        for (Bytes& frame : frames) {
-            auto station = decode_station(*parse_rtcm3(frame));
-            station->antenna_height = 0;
-            frame = encode(*station);
-        }
-        return frames;
-    }
-    if (kind.id.id != id_1033) return made.of(kind.id, port, following);
-    const ReportContext context = made.context(port);
-    Rtcm3Descriptors told;
-    told.number = 1033;
-    told.station = context.config.station;
-    told.receiver = context.board.identity.hardware;
-    told.firmware = context.board.identity.software;
-    return {encode(told)};
-}
-
 }  // namespace
 
 std::vector<Bytes> unicore_messages(const UnicoreLogKind& kind, EpochMessages& made, PortId port,
                                     std::span<const UbxMessageId> following, std::optional<GpsTime> asked) {
     if (kind.form == UnicoreForm::sentence) return made.of(kind.id, port, {});
-    if (kind.form == UnicoreForm::rtcm) return unicore_rtcm_messages(kind, made, port, following);
+    if (kind.form == UnicoreForm::rtcm) return make_station_message(kind.id, made, port, following);
     const ReportContext context = made.context(port);
     const UnicoreHeader header = unicore_header(context, asked);
     if (kind.name == UnicoreBestNav::message_name) return log_of(unicore_best_nav(context), kind, header);

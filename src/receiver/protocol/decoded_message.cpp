@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/core/words.hpp"
+#include "receiver/protocol/casic_messages.hpp"
 #include "receiver/protocol/dronecan_listing.hpp"
 #include "receiver/protocol/field_lister.hpp"
 #include "receiver/protocol/known_sbf.hpp"
@@ -119,6 +120,22 @@ void list_sbf(const SbfBlockView& block, DecodedMessage& message) {
 }
 
 template <class Message>
+bool list_casic_as(const CasicFrameView& frame, DecodedMessage& message) {
+    if (frame.id != Message::message_id) return false;
+    message.name = Message::message_name;
+    const auto found = decode_payload<Message>(frame.payload);
+    if (found) list_message(*found, message);
+    return found.has_value();
+}
+
+// A poll has no payload, and so no fields.
+void list_casic(const CasicFrameView& frame, DecodedMessage& message) {
+    message.id = fmt::format("{:02X}-{:02X}", frame.id.message_class, frame.id.id);
+    const bool known = KnownCasicMessages::any([&]<class Message>() { return list_casic_as<Message>(frame, message); });
+    if (!known) keep_payload(frame.payload, message);
+}
+
+template <class Message>
 bool list_unicore_as(const UnicoreFrameView& frame, DecodedMessage& message) {
     if constexpr (UnicoreBinaryLog<Message>) {
         if (frame.id != Message::message_id) return false;
@@ -180,8 +197,8 @@ void list_unicore(ByteSpan bytes, DecodedMessage& message) {
 }  // namespace
 
 std::string_view stream_kind_name(StreamKind kind) {
-    constexpr std::array<std::string_view, stream_kind_count> names{"ubx",     "nmea", "rtcm3",   "noise",   "msp",
-                                                                    "mavlink", "sbf",  "command", "unicore", "can"};
+    constexpr std::array<std::string_view, stream_kind_count> names{
+        "ubx", "nmea", "rtcm3", "noise", "msp", "mavlink", "sbf", "command", "unicore", "can", "casic"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -207,6 +224,8 @@ DecodedMessage decode_piece(const StreamPiece& piece) {
         if (const auto block = parse_sbf(bytes)) list_sbf(*block, message);
     } else if (piece.kind == StreamKind::unicore) {
         list_unicore(bytes, message);
+    } else if (piece.kind == StreamKind::casic) {
+        if (const auto frame = parse_casic_frame(bytes)) list_casic(*frame, message);
     } else if (piece.kind == StreamKind::can) {
         const std::string line = to_string(bytes);
         if (const auto frame = parse_slcan_line(std::string_view(line).substr(0, line.find('\r'))))

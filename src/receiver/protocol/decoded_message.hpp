@@ -38,7 +38,7 @@ struct DecodedMessage {
     Bytes payload;  ///< of messages that are not known, or whose payload is not as it should be
 };
 
-/// "ubx", "nmea", "rtcm3", "msp", "mavlink", "sbf", "noise", "command", "unicore", "can".
+/// "ubx", "nmea", "rtcm3", "msp", "mavlink", "sbf", "noise", "command", "unicore", "can", "casic".
 std::string_view stream_kind_name(StreamKind kind);
 
 /// What a piece says. Frames of messages that are not known keep their payload; noise keeps its bytes.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/core/can_frame.hpp"
+#include "receiver/protocol/casic_frame.hpp"
 #include "receiver/protocol/mavlink.hpp"
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
@@ -122,6 +123,12 @@ Candidate unicore_at(ByteSpan bytes) {
     return framed_at(bytes, StreamKind::unicore, unicore_frame_size(bytes), parse_unicore_frame);
 }
 
+Candidate casic_at(ByteSpan bytes) {
+    if (bytes.size() > 1 && bytes[1] != casic_sync_2) return no_piece;
+    if (bytes.size() < casic_head_size) return unfinished_piece;
+    return framed_at(bytes, StreamKind::casic, casic_frame_size(bytes), parse_casic_frame);
+}
+
 Candidate mavlink_at(ByteSpan bytes) {
     if (bytes.size() < (bytes[0] == mavlink_v1_start ? mavlink_v1_head_size : mavlink_v2_head_size))
         return unfinished_piece;
@@ -172,6 +179,8 @@ Candidate piece_at(ByteSpan bytes, const StreamProtocols& protocols) {
             return protocols.mavlink ? mavlink_at(bytes) : no_piece;
         case unicore_sync_1:
             return protocols.unicore ? unicore_at(bytes) : no_piece;
+        case casic_sync_1:
+            return protocols.casic ? casic_at(bytes) : no_piece;
         case '#':
             return protocols.unicore ? unicore_line_at(bytes) : no_piece;
         case '$':

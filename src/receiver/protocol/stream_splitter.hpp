@@ -1,5 +1,5 @@
-/// Finds UBX frames, NMEA sentences, RTCM 3 frames and, when asked to, frames of MSP, MAVLink, SBF, Unicore and CAN in
-/// one stream of bytes (RECEIVER.md 1.3, 1.4).
+/// Finds UBX frames, NMEA sentences, RTCM 3 frames and, when asked to, frames of MSP, MAVLink, SBF, Unicore, CAN and
+/// CASIC in one stream of bytes (RECEIVER.md 1.3, 1.4).
 ///
 /// A splitter for what a client sends, which tells payloads from false beginnings by the time.
 #pragma once
@@ -27,13 +27,14 @@ enum class StreamKind : std::uint8_t {
     command,  ///< a line of a command line, which the splitter does not look for: any text could be one
     unicore,  ///< a log, binary or as a line from #, or an answer, whose check holds as Unicore computes it
     can,      ///< a frame of a CAN bus as a line of SLCAN, with its carriage return; it has no checksum
+    casic,    ///< a frame whose sum of words holds
 };
-inline constexpr std::size_t stream_kind_count = 10;
+inline constexpr std::size_t stream_kind_count = 11;
 
 /// Which protocols are looked for.
 struct StreamProtocols {
     bool ubx = true, nmea = true, rtcm3 = true;
-    bool msp = false, mavlink = false, sbf = false, unicore = false, can = false;
+    bool msp = false, mavlink = false, sbf = false, unicore = false, can = false, casic = false;
     /// What is not yet whole is given up as soon as a whole UBX frame or sentence stands inside it, as by give_way().
     /// For who knows no time, and would rather lose a frame that holds another than wait for a false beginning.
     bool impatient = false;

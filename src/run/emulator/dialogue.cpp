@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "receiver/protocol/casic_messages.hpp"
 #include "receiver/protocol/nmea_sentence.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
 #include "receiver/protocol/ubx_messages.hpp"
@@ -14,8 +15,8 @@
 namespace skyloop::inline run {
 namespace {
 
-constexpr StreamProtocols client_protocols{};
-constexpr StreamProtocols receiver_protocols{.msp = true, .mavlink = true, .sbf = true, .unicore = true};
+constexpr StreamProtocols client_protocols{.casic = true};
+constexpr StreamProtocols receiver_protocols{.msp = true, .mavlink = true, .sbf = true, .unicore = true, .casic = true};
 
 std::string ubx_name(ByteSpan frame) {
     const auto parsed = parse_frame(frame);
@@ -47,6 +48,12 @@ std::string unicore_name(ByteSpan message) {
     return line ? std::string(line->name) : "UNICORE";
 }
 
+std::string casic_name(ByteSpan message) {
+    const auto frame = parse_casic_frame(message);
+    const std::string_view name = frame ? casic_message_name(frame->id) : std::string_view();
+    return name.empty() ? "CASIC" : fmt::format("CASIC-{}", name);
+}
+
 bool is_text(const StreamPiece& piece) {
     return piece.kind == StreamKind::noise &&
            std::all_of(piece.bytes.begin(), piece.bytes.end(),
@@ -71,6 +78,8 @@ std::string message_name(StreamKind kind, ByteSpan message) {
             return "SBF";
         case StreamKind::unicore:
             return unicore_name(message);
+        case StreamKind::casic:
+            return casic_name(message);
         case StreamKind::can:
             return "DroneCAN";
         case StreamKind::command:

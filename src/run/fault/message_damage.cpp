@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/core/can_frame.hpp"
+#include "receiver/protocol/casic_frame.hpp"
 #include "receiver/protocol/mavlink.hpp"
 #include "receiver/protocol/msp.hpp"
 #include "receiver/protocol/ubx_frame.hpp"
@@ -22,7 +23,8 @@ constexpr Nanoseconds longest_message = std::chrono::seconds(1);
 constexpr Nanoseconds longest_lateness = std::chrono::seconds(2);
 constexpr double longest_pause_s = 1e9;
 
-constexpr StreamProtocols wire_protocols{.msp = true, .mavlink = true, .sbf = true, .unicore = true, .can = true};
+constexpr StreamProtocols wire_protocols{
+    .msp = true, .mavlink = true, .sbf = true, .unicore = true, .can = true, .casic = true};
 
 constexpr std::size_t rtcm3_payload_at = 3;  // RTCM 10403.3, section 4.2
 constexpr std::size_t sbf_payload_at = 8;    // after sync, CRC, ID and length
@@ -113,6 +115,8 @@ void spoil_checksum(Bytes& message, StreamKind kind, RandomStream& random) {
             return turn_bit_of_unicore(message, random);
         case StreamKind::can:
             return turn_bit_of_can(message, random);
+        case StreamKind::casic:
+            return turn_bit_from(message, casic_head_size, random);
         case StreamKind::noise:
         case StreamKind::command:
             return;

@@ -100,6 +100,7 @@ bool solves_rtk(const UsedReceiver& receiver) {
 
 bool sends_rtcm(const firmware::BoardProfile& board) {
     return board.maker == firmware::MakerKind::sbf || board.maker == firmware::MakerKind::unicore ||
+           board.maker == firmware::MakerKind::quectel ||
            std::any_of(board.messages.begin(), board.messages.end(),
                        [](const UbxMessageId& id) { return id.message_class == firmware::class_rtcm; });
 }

@@ -75,6 +75,7 @@ void read_board_timing(TableReader& table, firmware::Timing& timing) {
     table.quantity("flash_write_s", timing.flash_write, {0, 10});
     table.quantity("signal_restart_s", timing.signal_restart, {0, 60});
     table.quantity("latency_deviation_s", timing.latency_deviation, {0, 1});
+    table.quantity("command_sleep_s", timing.command_sleep, {0, 60});
     table.quantity("coasting_s", timing.coasting, {0, 600});
     table.quantity("cold_start_s", timing.cold_start, {0, 3600});
     table.quantity("warm_start_s", timing.warm_start, {0, 3600});

@@ -77,6 +77,7 @@ void read_board_style(TableReader& nmea, firmware::NmeaStyle& style) {
     nmea.boolean("magnetic_fields", style.magnetic_fields);
     nmea.boolean("gsa_manual", style.gsa_manual);
     nmea.boolean("tracked_only", style.tracked_only);
+    nmea.boolean("one_gsv_list", style.one_gsv_list);
     nmea.boolean("gst_ellipse", style.gst_ellipse);
     nmea.boolean("gst_padded", style.gst_padded);
     nmea.boolean("zeros_without_fix", style.zeros_without_fix);

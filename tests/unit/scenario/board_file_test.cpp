@@ -24,8 +24,8 @@ const std::vector<fs::path> shipped_boards{fs::path(SKYLOOP_SOURCE_DIR) / "board
 
 // They speak another protocol.
 const std::vector<std::string> boards_without_sentences{"dronecan-generic", "dronecan-heading", "mavlink-gps-input",
-                                                        "msp-gps",          "septentrio-sbf",   "unicore-um980",
-                                                        "unicore-um982"};
+                                                        "msp-gps",          "quectel-lc29h-bs", "septentrio-sbf",
+                                                        "unicore-um980",    "unicore-um982"};
 
 std::string board_refusal(std::string_view text) {
     const auto board = read_board(text, "boards/receivers/test.toml");
@@ -68,7 +68,7 @@ TEST(BoardFile, TellsTheUsbPort) {
 
 TEST(BoardFile, EveryShippedBoardIsRead) {
     const auto names = list_boards(shipped_boards);
-    EXPECT_EQ(names.size(), 33U);
+    EXPECT_EQ(names.size(), 41U);
     for (const std::string& name : names) {
         const auto board = find_board(name, shipped_boards);
         ASSERT_TRUE(board) << board.error().message;
@@ -101,6 +101,13 @@ TEST(BoardFile, ShippedBoardsHaveTheMakersFactorySettings) {
     EXPECT_EQ(board("unicore-um980").maker, firmware::MakerKind::unicore);
     EXPECT_EQ(board("unicore-um982").identity.hardware, "UM982");
     EXPECT_EQ(board("unicore-um982").ports.size(), 3u);
+    EXPECT_EQ(board("casic-at6558").maker, firmware::MakerKind::casic);
+    EXPECT_TRUE(board("casic-at6558").style.one_gsv_list);
+    EXPECT_EQ(board("quectel-l76k").constellations.size(), 3u);
+    EXPECT_EQ(board("quectel-lg290p").maker, firmware::MakerKind::quectel);
+    EXPECT_EQ(board("quectel-lc29h-ea").baud, 460800U);
+    EXPECT_EQ(board("unicore-uc6580").maker, firmware::MakerKind::ufirebird);
+    EXPECT_EQ(board("airoha-ag3335").timing.command_sleep, Seconds(4));
     EXPECT_EQ(board("nmea-generic").baud, 9600U);
     EXPECT_EQ(board("nmea-generic").sentences.size(), 8U);
 }
@@ -239,11 +246,11 @@ TEST(FindBoard, RefusesUnknownNames) {
     ASSERT_FALSE(board);
     EXPECT_EQ(board.error().code, ErrorCode::usage);
     EXPECT_EQ(board.error().message, "board 'ublox-m88' is not known; did you mean 'ublox-m8'?");
-    EXPECT_THAT(
-        find_board("nope", shipped_boards).error().message,
-        AllOf(HasSubstr("board 'nope' is not known; expected one of airoha-ag33xx, dronecan-generic, dronecan-heading, "
-                        "mavlink-gps-input, msp-gps"),
-              HasSubstr(", ublox-m9, ublox-m9-spg450, ublox-max-m10s, ")));
+    EXPECT_THAT(find_board("nope", shipped_boards).error().message,
+                AllOf(HasSubstr("board 'nope' is not known; expected one of airoha-ag3335, airoha-ag33xx, "
+                                "casic-at6558, dronecan-generic, dronecan-heading, "
+                                "mavlink-gps-input, msp-gps"),
+                      HasSubstr(", ublox-m9, ublox-m9-spg450, ublox-max-m10s, ")));
     EXPECT_FALSE(find_board("../receivers/ublox-m8", shipped_boards));
     const std::vector<fs::path> nowhere{"/no/such/folder"};
     EXPECT_THAT(find_board("ublox-m8", nowhere).error().message, HasSubstr("searched: /no/such/folder"));
@@ -260,7 +267,9 @@ TEST(FindBoard, TakesTheNamesOfModules) {
         {"ZED-X20P", "ublox-x20p"},      {"NEO-F10N", "ublox-f10"},
         {"DAN-F10N", "ublox-f10"},       {"NEO-6M", "ublox-6"},
         {"mosaic-X5", "septentrio-sbf"}, {"PA6H", "mtk3339"},
-        {"MT3339", "mtk3339"},
+        {"MT3339", "mtk3339"},           {"AG3335", "airoha-ag3335"},
+        {"ATGM336H", "casic-at6558"},    {"L76K", "quectel-l76k"},
+        {"lg290p", "quectel-lg290p"},    {"UC6580", "unicore-uc6580"},
     };
     for (const auto& [alias, name] : aliases) {
         const auto board = find_board(alias, shipped_boards);
@@ -289,7 +298,7 @@ TEST(FindBoard, KnowsTheBoardThatAModuleHas) {
         {"m10", "ublox-m10"},         {"f9p", "ublox-f9p"},
         {"ZED-F9P-04", "ublox-f9p"},  {"NEO-M9", "ublox-m9"},
         {"x20p", "ublox-x20p"},       {"mosaic", "septentrio-sbf"},
-        {"AG3335", "airoha-ag33xx"},  {"septentrio", "septentrio-sbf"},
+        {"AG33", "airoha-ag33xx"},    {"septentrio", "septentrio-sbf"},
     };
     for (const auto& [name, board] : meant)
         EXPECT_EQ(find_board(name, shipped_boards).error().message,
