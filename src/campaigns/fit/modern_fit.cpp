@@ -16,11 +16,8 @@ namespace {
 constexpr std::array resting_places{Surroundings::open_sky,     Surroundings::residential, Surroundings::rural,
                                     Surroundings::forest,       Surroundings::urban,       Surroundings::urban_canyon,
                                     Surroundings::indoor_window};
-constexpr std::size_t candidates = 2, rounds = 2;
+constexpr std::size_t candidates = 2, rounds = 2, seeds_of_trial = 2;
 constexpr std::size_t least_reports = 30;  // of satellites in ten degrees of elevation
-
-// Errors wander for minutes: short runs say little each.
-std::uint64_t seeds_for(Seconds length) { return length.value() < 1200 ? 3 : 2; }
 
 template <class Take>
 void for_common_bins(const SignalStrengthByElevation& a, const SignalStrengthByElevation& b, Take&& take) {
@@ -150,7 +147,7 @@ private:
         trial.settings = settings;
         std::vector<ScaledRuns> seeds;
         FitConditions conditions = request_.conditions;
-        for (std::uint64_t i = 0; i < seeds_for(conditions.length); ++i, ++conditions.seed) {
+        for (std::uint64_t i = 0; i < seeds_of_trial; ++i, ++conditions.seed) {
             auto one = run_modern(conditions, request_.receiver, settings, data_, watch_);
             if (!one) return fail(one.error());
             seeds.push_back({std::move(*one), {}});
@@ -195,7 +192,8 @@ private:
 
     Result<ModernTrial> improve(ModernTrial start) {
         auto best = with_level(std::move(start));
-        for (std::size_t round = 0; round < rounds && best; ++round) {
+        constexpr double near_enough = 1;
+        for (std::size_t round = 0; round < rounds && best && best->misfit > near_enough; ++round) {
             const auto settings = better_settings(*best);
             if (!settings) return fail(settings.error());
             auto trial = run(*settings);
@@ -252,7 +250,7 @@ FitTarget target_of(const StandingLog& log) {
 std::size_t most_runs(const ModernFitRequest& request) {
     const std::size_t places = request.surroundings ? 1 : resting_places.size();
     const std::size_t improved = std::min(candidates, places) * (1 + rounds * (fitted_causes.size() + 1));
-    return (1 + places + improved) * seeds_for(request.conditions.length);
+    return (1 + places + improved) * seeds_of_trial;
 }
 
 Result<ModernFit> fit_modern(const ModernFitRequest& request, const FitTarget& target, const DataFolders& data,

@@ -11,17 +11,7 @@ namespace {
 constexpr std::size_t leaves = 16, levels = 4;
 constexpr std::chrono::minutes step{15};
 constexpr std::int64_t blocks_of_root = 8, blocks_of_key = 13;
-constexpr int alert_message = 16;  // among the leaves, counted from 1 on
-
-// Status of chain and public key (table 4).
-enum class KeyStatus : std::uint8_t {
-    nominal = 1,
-    end_of_chain = 2,
-    chain_revoked = 3,
-    new_public_key = 4,
-    public_key_revoked = 5,
-    alert_message = 7,
-};
+constexpr int alert_leaf = 16;  // among the leaves, counted from 1 on
 
 std::string hexadecimal(ByteSpan bytes) {
     constexpr std::string_view digits = "0123456789ABCDEF";
@@ -43,7 +33,7 @@ void put_bytes(BitWriter& bits, ByteSpan bytes) {
 Bytes leaf_of(std::size_t index, const Bytes& point) {
     constexpr std::uint64_t curve_p256 = 1, alert = 4;
     constexpr std::size_t before_key = 1040;  // bits
-    const bool last = index + 1 == alert_message;
+    const bool last = index + 1 == alert_leaf;
     BitWriter bits;
     bits.put(last ? alert : curve_p256, 4);
     bits.put(last ? 0 : index + 1, 4);
@@ -88,6 +78,16 @@ struct OsnmaKeys::Secrets {
 
 // What is told over a time.
 struct OsnmaKeys::Part {
+    // Status of chain and public key (table 4).
+    enum class KeyStatus : std::uint8_t {
+        nominal = 1,
+        end_of_chain = 2,
+        chain_revoked = 3,
+        new_public_key = 4,
+        public_key_revoked = 5,
+        alert = 7,
+    };
+
     std::chrono::minutes from{0};  // after the change
     OsnmaStatus status = OsnmaStatus::operational;
     int chain = 1;  // in force
@@ -102,7 +102,7 @@ struct OsnmaKeys::Part {
 
 std::vector<OsnmaKeys::Part> OsnmaKeys::parts_of(OsnmaChange change) {
     using enum OsnmaStatus;
-    using enum KeyStatus;
+    using enum Part::KeyStatus;
     switch (change) {
         case OsnmaChange::new_key:
             return {{},
@@ -122,7 +122,7 @@ std::vector<OsnmaKeys::Part> OsnmaKeys::parts_of(OsnmaChange change) {
                     {step, operational, 2, public_key_revoked, 2, 2, 2, true},
                     {2 * step, operational, 2, nominal, 2, 2, 2}};
         case OsnmaChange::alert:
-            return {{}, {{}, do_not_use, 1, KeyStatus::alert_message, 1, 1, world::alert_message}};
+            return {{}, {{}, do_not_use, 1, alert, 1, 1, alert_leaf}};
         case OsnmaChange::none:
             break;
     }
@@ -214,7 +214,7 @@ std::optional<TeslaKey> OsnmaKeys::key(GpsTime subframe) const {
 const OsnmaMessage& OsnmaKeys::message(GpsTime subframe) const {
     const std::size_t number = part_at(subframe);
     const Part& part = parts_[number];
-    if (part.told == alert_message) return keys_[number];
+    if (part.told == alert_leaf) return keys_[number];
     // How many subframes ago both messages began to come by turns.
     const std::int64_t since =
         part.by_turns ? (subframe - (settings_.at + parts_[1].from)) / osnma_subframe % (blocks_of_key + blocks_of_root)
