@@ -34,7 +34,7 @@ struct HeardAlmanac {
 };
 
 // @param week that of BDT in which it was heard
-HeardAlmanac almanac_of(const PageBits& page, int week, bool stationary) {
+HeardAlmanac almanac_of(const PageBits& page, std::int64_t week, bool stationary) {
     constexpr double half_circle = std::numbers::pi;
     HeardAlmanac heard{{}, page.field(222, 2)};
     KeplerEphemeris& a = heard.orbit;
