@@ -66,7 +66,8 @@ const GpsTime first_frame = to_gps_time(2300, 14 + 36 * 60 * 100.0);
 bool is_geo(int number) { return is_beidou_geo({Constellation::beidou, number}); }
 
 void keep(Heard& heard, const PageBits& page, int number, GpsTime at) {
-    heard.almanacs[number] = almanac_of(page, bdt_week_and_tow(at).week, is_geo(number));
+    constexpr int last = 63;  // the third extension has six empty pages behind it
+    if (number <= last) heard.almanacs[number] = almanac_of(page, bdt_week_and_tow(at).week, is_geo(number));
 }
 
 Heard hear_d1() {
