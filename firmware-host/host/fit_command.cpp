@@ -1,14 +1,11 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/core/files.hpp"
 #include "base/core/words.hpp"
@@ -17,181 +14,14 @@
 #include "commands.hpp"
 #include "data_folders.hpp"
 #include "file_streams.hpp"
+#include "fit_logs.hpp"
+#include "run/scenario/modern_settings.hpp"
 #include "run_options.hpp"
 #include "run_session.hpp"
-#include "study/analysis/standing_log.hpp"
 #include "study/plot/scatter_plot.hpp"
 
 namespace skyloop::host {
 namespace {
-
-struct FitOptions {
-    std::string log, start, reference, out = ".";
-    std::vector<std::string> nav, check;
-    double interval = 0;  // s; 0: as the logs say
-    std::size_t skip = 0, count = 0;
-    bool check_rest = false;
-    Verbosity verbosity;
-};
-
-// Of one terminal line, rewritten, and asked after each epoch whether the user wants to stop.
-class FitProgress {
-public:
-    explicit FitProgress(const Messages& messages)
-        : shown_(!messages.verbosity().quiet && !messages.verbosity().json && ::isatty(STDERR_FILENO) != 0) {}
-    ~FitProgress() { clear(); }
-    FitProgress(const FitProgress&) = delete;
-    FitProgress& operator=(const FitProgress&) = delete;
-
-    void expect(double epochs) { expected_ += epochs; }
-    [[nodiscard]] FitWatch watch() {
-        return {&stop_, [this] { count(); }};
-    }
-    void clear() const {
-        if (shown_ && done_ > 0) say("\r\x1b[K");
-    }
-
-private:
-    void count() {
-        ++done_;
-        stop_ = stop_was_asked();
-        const auto now = std::chrono::steady_clock::now();
-        if (!shown_ || now - last_ < std::chrono::milliseconds(200)) return;
-        last_ = now;
-        say(fmt::format("\r\x1b[Krunning the model: {:.0f} %",
-                        100 * std::min(1.0, static_cast<double>(done_) / expected_)));
-    }
-
-    bool shown_;
-    std::atomic<bool> stop_{false};
-    std::uint64_t done_ = 0;
-    double expected_ = 1;
-    std::chrono::steady_clock::time_point last_{};
-};
-
-// How the logs are to be read.
-struct LogReading {
-    std::unique_ptr<Geoid> geoid;
-    std::optional<Geodetic> reference;
-    std::optional<GpsTime> start;
-    double interval = 0;
-};
-
-Result<LogReading> reading_of(const FitOptions& options) {
-    LogReading reading;
-    std::vector<std::string> unused;
-    reading.geoid = find_geoid(data_folders(), unused);
-    reading.interval = options.interval;
-    if (!options.reference.empty()) {
-        const auto place = parse_reference(options.reference);
-        if (!place) return fail(place.error());
-        reading.reference = *place;
-    }
-    if (!options.start.empty()) {
-        const auto utc = parse_utc(options.start);
-        if (!utc) return fail(utc.error().code, "--start: " + utc.error().message);
-        reading.start = to_gps_time(*utc, LeapSeconds::announced());
-    }
-    return reading;
-}
-
-// A log with the time of each fix.
-Result<FixSeries> read_dated(const std::string& path, const LogReading& reading, const Messages& messages) {
-    auto series = read_fix_series(path, reading.geoid.get());
-    if (!series) return series;
-    messages.warnings(series->warnings);
-    if (reading.interval > 0 && series->interval)
-        messages.warning(fmt::format("{}: has times of its own, one fix every {:g} s; --interval is not used", path,
-                                     series->interval->value()));
-    else if (reading.interval > 0)
-        series->interval = Seconds(reading.interval);
-    if (series->dated && reading.start)
-        messages.warning(fmt::format("{}: has dates of its own; --start is not used", path));
-    if (!series->interval)
-        return fail(ErrorCode::usage,
-                    fmt::format("{}: has no times; expected --interval with the seconds between its fixes", path));
-    if (!series->dated && !reading.start)
-        return fail(ErrorCode::usage,
-                    fmt::format("{}: tells no date; expected --start with the time of its first fix in UTC", path));
-    return reading.start ? dated_from(std::move(*series), *reading.start) : std::move(*series);
-}
-
-// What is fitted to, and what the fit is held against.
-struct FitLogs {
-    StandingLog log;
-    std::vector<StandingLog> checks;
-};
-
-Result<std::vector<StandingLog>> rest_of(const FixSeries& whole, const FitOptions& options, const LogReading& reading,
-                                         const Messages& messages) {
-    std::vector<StandingLog> checks;
-    if (!options.check_rest) return checks;
-    const FixSeries rest = slice(whole, {options.skip + options.count, 1, 0});
-    for (FixSeries& part : windows(rest, options.count)) {
-        part.name =
-            fmt::format("{}, fixes {} to {}", whole.name, options.skip + options.count * (checks.size() + 1) + 1,
-                        options.skip + options.count * (checks.size() + 2));
-        auto standing = standing_log(std::move(part), reading.reference);
-        if (!standing) return fail(standing.error());
-        checks.push_back(std::move(*standing));
-    }
-    if (checks.empty())
-        messages.warning(fmt::format("{}: --check-rest: {} fixes are left, fewer than --count {}", whole.name,
-                                     rest.fixes(), options.count));
-    return checks;
-}
-
-Result<FitLogs> read_logs(const FitOptions& options, const Messages& messages) {
-    const auto reading = reading_of(options);
-    if (!reading) return fail(reading.error());
-    const auto whole = read_dated(options.log, *reading, messages);
-    if (!whole) return fail(whole.error());
-    FixSeries part = slice(*whole, {options.skip, 1, options.count});
-    if (part.fixes() == 0)
-        return fail(ErrorCode::usage, fmt::format("--skip {}: {} has {} fixes; expected fewer", options.skip,
-                                                  whole->name, whole->fixes()));
-    auto log = standing_log(std::move(part), reading->reference);
-    if (!log) return fail(log.error());
-    auto checks = rest_of(*whole, options, *reading, messages);
-    if (!checks) return fail(checks.error());
-    for (const std::string& path : options.check) {
-        auto series = read_dated(path, *reading, messages);
-        if (!series) return fail(series.error());
-        auto standing = standing_log(std::move(*series), reading->reference);
-        if (!standing) return fail(standing.error());
-        checks->push_back(std::move(*standing));
-    }
-    return FitLogs{std::move(*log), std::move(*checks)};
-}
-
-FitConditions conditions_of(const StandingLog& log, const FitOptions& options) {
-    FitConditions conditions{log.place, *log.start, log.length};
-    conditions.navigation.assign(options.nav.begin(), options.nav.end());
-    return conditions;
-}
-
-std::string figures_text(const SampleStatistics& s) {
-    return fmt::format("mean {:.2f} m, standard deviation {:.2f} m", s.mean, s.std);
-}
-
-SampleStatistics figures_of(const std::vector<double>& values) {
-    return sample_statistics(values).value_or(SampleStatistics{});
-}
-
-// The article's percentage of what the model makes against the log.
-ComparisonPercent percent_of(const SampleStatistics& model, const StandingLog& log) {
-    return comparison_percent(model, log.horizontal).value_or(ComparisonPercent{});
-}
-
-void print_log(const StandingLog& log) {
-    const Geodetic& at = log.place;
-    fmt::print("log         {}: {} fixes in {:.0f} s from {}, at rest at {:.7f}, {:.7f}, {:.2f} m\n",
-               on_a_terminal(log.series.name), log.series.fixes(), log.length.value(), utc_text(*log.start),
-               at.latitude.deg(), at.longitude.deg(), at.height.above_ellipsoid.value());
-    static constexpr std::string_view about[] = {"its own truth", "the reference", "its own mean"};
-    fmt::print("            horizontal error about {}: {}\n", about[static_cast<std::size_t>(log.errors.reference)],
-               figures_text(log.horizontal));
-}
 
 void print_model(std::string_view what, const BaselineFractions& fractions, const SampleStatistics& model,
                  const StandingLog& log) {
@@ -290,17 +120,12 @@ Result<void> write_files(const std::vector<std::filesystem::path>& files, const 
     return write_whole_file(files.back(), figure);
 }
 
-int fit_log(const FitOptions& options) {
+int fit_baseline_log(const FitOptions& options) {
     const Messages messages(options.verbosity);
-    if (options.check_rest && options.count == 0)
-        return messages.error({ErrorCode::usage,
-                               "--check-rest: cuts the rest into parts of --count fixes; expected "
-                               "--count, too"});
-    const std::filesystem::path folder = options.out;
-    const std::vector<std::filesystem::path> files{folder / "fit.toml", folder / "fit.svg"};
-    if (const auto room = check_made_by("fit", files); !room) return messages.error(room.error());
+    const auto files = fit_files(options);
+    if (!files) return messages.error(files.error());
     catch_stop_signals();
-    const auto logs = read_logs(options, messages);
+    const auto logs = read_fit_logs(options, messages);
     if (!logs) return messages.error(logs.error());
     FitProgress progress(messages);
     const auto result = compute(*logs, options, progress, messages);
@@ -313,25 +138,52 @@ int fit_log(const FitOptions& options) {
             fmt::format("the fractions end at {:g}, and the receiver's errors are larger than the model's "
                         "with them",
                         largest_fraction));
-    if (const auto written = write_files(files, *logs, *result, options); !written)
+    if (const auto written = write_files(*files, *logs, *result, options); !written)
         return messages.error(written.error());
     if (options.verbosity.quiet) return 0;
     print_log(logs->log);
     print_result(*logs, *result);
-    fmt::print("written     {}, {}\n", files.front().string(), files.back().string());
+    fmt::print("written     {}, {}\n", files->front().string(), files->back().string());
     return 0;
+}
+
+// What only the modern model has is refused beside baseline, by CLI11's way of saying so.
+void add_model_options(CLI::App& command, FitOptions& options) {
+    const std::vector<std::string> presets(std::begin(modern_preset_names), std::end(modern_preset_names));
+    const std::vector<std::string> places(std::begin(surroundings_names), std::end(surroundings_names));
+    const std::vector<std::string> systems(constellation_names.begin(), constellation_names.end());
+    command
+        .add_option("--model", options.model,
+                    "baseline: the two fractions of its delays; modern: surroundings and scales of causes")
+        ->check(CLI::IsMember({"baseline", "modern"}))
+        ->capture_default_str();
+    command.add_option("--preset", options.preset, "Of the modern model: what kind of receiver it is")
+        ->check(CLI::IsMember(presets))
+        ->capture_default_str();
+    command.add_option("--board", options.board,
+                       "Of the modern model: the receiver's profile, as `skyloop boards` has them");
+    command
+        .add_option("--constellations", options.constellations,
+                    "Of the modern model: systems that the receiver uses, with commas; default: the board's")
+        ->delimiter(',')
+        ->check(CLI::IsMember(systems));
+    command
+        .add_option("--surroundings", options.surroundings,
+                    "Of the modern model: what is around the antenna; default: what fits best")
+        ->check(CLI::IsMember(places));
 }
 
 }  // namespace
 
 Action add_fit_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "fit", "Fit the sensor model baseline to a receiver's log at rest: a scenario, percentages, a figure");
+        "fit", "Fit a model's errors to those of a receiver's log at rest: a scenario, percentages, a figure");
     auto options = std::make_shared<FitOptions>();
     command
         ->add_option("LOG", options->log,
                      "A receiver's output, RTKLIB .pos, CSV or track, of 10 minutes or more without gaps")
         ->required();
+    add_model_options(*command, *options);
     command
         ->add_option("--nav", options->nav, "RINEX navigation file of that day; default: the nominal sky; repeatable")
         ->allow_extra_args(false);
@@ -350,7 +202,7 @@ Action add_fit_command(CLI::App& app) {
                       "Compare it with what follows in LOG, too, in parts of --count fixes");
     command->add_option("--out", options->out, "Folder for fit.toml and fit.svg; default: this one");
     add_verbosity_options(*command, options->verbosity);
-    return [options] { return fit_log(*options); };
+    return [options] { return options->model == "modern" ? fit_modern_log(*options) : fit_baseline_log(*options); };
 }
 
 }  // namespace skyloop::host

@@ -58,11 +58,12 @@ def gst(seconds):
 
 
 class Osnma(unittest.TestCase):
-    def run_of(self, more=""):
+    def run_of(self, more="", sky=""):
         temporary = open_folder()
         self.addCleanup(temporary.cleanup)
         folder = pathlib.Path(temporary.name)
-        (folder / "s.toml").write_text(SCENARIO.format(more=more), encoding="utf-8")
+        text = SCENARIO.format(more=more).replace("osnma = true\n", f"osnma = true\n{sky}")
+        (folder / "s.toml").write_text(text, encoding="utf-8")
         skyloop("simulate", folder / "s.toml", "--out", folder / "run", "--quiet")
         return folder / "run"
 
@@ -148,6 +149,29 @@ class Osnma(unittest.TestCase):
             if level > 0:
                 both = nodes[level - 1, 2 * place] + nodes[level - 1, 2 * place + 1]
                 self.assertEqual(hashlib.sha256(both).digest(), node)
+
+    # SIS ICD 1.1, sections 3.2.2.2 and 6.2: a leaf that fills the message, by four nodes to the root.
+    def test_an_alert_message_leads_to_the_root_of_the_tree(self):
+        folder = self.run_of(sky="osnma_alert_s = 90\n")
+        subframes, blocks = self.heard(folder), {}
+        begin = min(start for _, start in subframes)
+        for (_, start), (_, root, _) in subframes.items():
+            if start < begin + 60:
+                self.assertEqual(root[:8], "10010010")
+            if start > begin + 120:
+                self.assertEqual((root[:8], root[8:12]), ("11011110", "1111"), "do not use, chain 1, alert message")
+                blocks[int(root[12:16], 2)] = root[16:]
+        self.assertEqual(sorted(blocks), list(range(13)))
+        dsm = "".join(blocks[i] for i in range(13))
+        self.assertEqual(dsm[1032:1040], "01000000")
+        node, place = hashlib.sha256(to_bytes(dsm[1032:])).digest(), int(dsm[4:8], 2)
+        for level in range(4):
+            other = to_bytes(dsm[8 + 256 * level:264 + 256 * level])
+            node = hashlib.sha256(node + other if place % 2 == 0 else other + node).digest()
+            place //= 2
+        text = (folder / "osnma_keys.xml").read_text(encoding="ascii")
+        root = re.search(r"<j>4</j><i>0</i><lengthInBits>256</lengthInBits><x_ji>(\w+)</x_ji>", text)[1]
+        self.assertEqual(node.hex().upper(), root)
 
     def test_the_same_bytes_again_and_a_fault_that_changes_them(self):
         runs = [self.run_of(), self.run_of(), self.run_of('[[fault]]\nkind = "osnma_wrong_tags"\nat_s = 100\n')]

@@ -117,6 +117,9 @@ struct OsnmaVerdict {
     int sequences = 0, wrong_sequences = 0;         ///< MACSEQ
     std::set<std::uint64_t> signers, key_statuses;  ///< PKID of the roots, CPKS
     std::set<std::uint64_t> told_keys;              ///< PKID of DSM-PKR
+    int alerts = 0;                                 ///< alert messages that the tree vouches for
+    std::set<std::uint64_t> statuses, chains;       ///< NMAS, CID in force
+    std::map<std::uint64_t, int> keys_by_chain;
 };
 
 class OsnmaClient {
@@ -144,7 +147,7 @@ public:
         for (const auto& [when, s] : heard_)
             if (s.pages.size() == 15) judge_key(when, s);
         for (const auto& [when, s] : heard_)
-            if (s.pages.size() == 15 && chain_) judge_tags(when, s);
+            if (s.pages.size() == 15 && chain_of(s) != nullptr) judge_tags(when, s);
         return verdict_;
     }
 
@@ -167,6 +170,12 @@ private:
         return static_cast<std::uint64_t>(seconds / 604800 % 4096) << 20 | static_cast<std::uint64_t>(seconds % 604800);
     }
 
+    // That in force in a subframe, by its header; null: its root is not known.
+    [[nodiscard]] const Chain* chain_of(const Subframe& s) const {
+        const auto found = chains_.find(s.root[0] >> 4 & 3);
+        return found == chains_.end() ? nullptr : &found->second;
+    }
+
     // Blocks of a DSM by its number, until one with another content begins.
     void assemble() {
         struct Blocks {
@@ -185,6 +194,8 @@ private:
                 const std::uint64_t header = hkroot.field(0, 8), id = hkroot.field(8, 4);
                 if (header == 0) continue;  // a satellite without OSNMA
                 verdict_.key_statuses.insert(header >> 1 & 7);
+                verdict_.statuses.insert(header >> 6);
+                verdict_.chains.insert(header >> 4 & 3);
                 Blocks& blocks = messages[id];
                 if (blocks.header != header) blocks = {header, {}};
                 BitString block;
@@ -238,7 +249,7 @@ private:
         if (sound && filled && key != public_keys.end() && signature_holds(key->second, signature, message.octets())) {
             ++verdict_.roots;
             verdict_.signers.insert(signer);
-            if (!chain_) chain_ = chain;
+            chains_.emplace(dsm.field(8, 2), chain);
         } else {
             ++verdict_.wrong_roots;
         }
@@ -246,8 +257,12 @@ private:
 
     // Section 6.1: four nodes lead from the leaf to the root of the tree.
     void judge_public_key(const BitString& dsm) {
+        constexpr std::uint64_t p256 = 1, alert = 4;
+        const std::uint64_t type = dsm.field(4 + 4 + 1024, 4);
+        // Table 6: an alert message reaches to the end, and has no padding.
+        const std::size_t key_bits = type == alert ? dsm.size() - 1040 : 264;
         BitString leaf;
-        leaf.add(dsm, 4 + 4 + 1024, 4 + 4 + 264);
+        leaf.add(dsm, 4 + 4 + 1024, 4 + 4 + key_bits);
         Octets node = digest_of(leaf.octets());
         std::uint64_t place = dsm.field(4, 4);
         for (std::size_t level = 0; level < 4; ++level, place /= 2) {
@@ -260,8 +275,11 @@ private:
         Octets padded = merkle_root;
         const Octets told = leaf.octets();
         padded.insert(padded.end(), told.begin(), told.end());
-        const bool filled = dsm.octets(1304, 6) == first_of(digest_of(padded), 6);
-        if (node == merkle_root && filled && leaf.field(0, 4) == 1) {
+        const std::size_t padding = (dsm.size() - 1040 - key_bits) / 8;
+        const bool filled = dsm.octets(1040 + key_bits, padding) == first_of(digest_of(padded), padding);
+        if (node == merkle_root && type == alert && leaf.field(4, 4) == 0) {
+            ++verdict_.alerts;
+        } else if (node == merkle_root && filled && type == p256) {
             ++verdict_.public_keys;
             verdict_.told_keys.insert(leaf.field(4, 4));
             public_keys[leaf.field(4, 4)] = leaf.octets(8, 33);
@@ -279,23 +297,26 @@ private:
 
     // Section 6.3: hashed down to one that is known, or to the root.
     void judge_key(const When& when, const Subframe& s) {
-        if (!chain_) return;
+        const Chain* chain = chain_of(s);
+        if (chain == nullptr) return;
+        const std::uint64_t number = s.root[0] >> 4 & 3;
         const BitString mack = mack_of(s);
-        const std::size_t tags = tags_of(when.second).size();
-        const std::size_t at = tags * (static_cast<std::size_t>(chain_->tag_bits) + 16);
-        const Octets key = mack.octets(at, chain_->key_octets);
-        if (key == Octets(chain_->key_octets)) return;  // a satellite without OSNMA
+        const std::size_t tags = tags_of(*chain, when.second).size();
+        const std::size_t at = tags * (static_cast<std::size_t>(chain->tag_bits) + 16);
+        const Octets key = mack.octets(at, chain->key_octets);
+        if (key == Octets(chain->key_octets)) return;  // a satellite without OSNMA
         Octets node = key;
         std::int64_t time = when.second;
-        while (time > chain_->first - 30 && !keys_.contains(time)) {
+        while (time > chain->first - 30 && !keys_.contains({number, time})) {
             time -= 30;
             BitString message;
-            message.add(node).add(gst(time), 32).add(chain_->alpha, 48);
-            node = first_of(digest_of(message.octets()), chain_->key_octets);
+            message.add(node).add(gst(time), 32).add(chain->alpha, 48);
+            node = first_of(digest_of(message.octets()), chain->key_octets);
         }
-        const Octets& known = time > chain_->first - 30 ? keys_[time] : chain_->root;
+        const Octets& known = time > chain->first - 30 ? keys_[{number, time}] : chain->root;
         if (node == known) {
-            keys_[when.second] = key;
+            keys_[{number, when.second}] = disclosed_[when.second] = key;
+            ++verdict_.keys_by_chain[number];
             ++verdict_.keys;
         } else {
             ++verdict_.wrong_keys;
@@ -307,8 +328,8 @@ private:
         bool self, flexible;
     };
     // Annex C, MACLT 34: 00S FLX 04S FLX 12S 00E, then 00S FLX 00E 12S 00E 12E.
-    [[nodiscard]] std::vector<Slot> tags_of(std::int64_t subframe) const {
-        if (chain_->order != 34) return {};
+    [[nodiscard]] static std::vector<Slot> tags_of(const Chain& chain, std::int64_t subframe) {
+        if (chain.order != 34) return {};
         if (subframe % 60 == 0)
             return {{0, true, false}, {0, false, true},  {4, true, false},
                     {0, false, true}, {12, true, false}, {0, false, false}};
@@ -350,10 +371,11 @@ private:
     }
 
     void judge_tags(const When& when, const Subframe& s) {
+        const Chain& chain = *chain_of(s);
         const BitString mack = mack_of(s);
-        const std::vector<Slot> slots = tags_of(when.second);
+        const std::vector<Slot> slots = tags_of(chain, when.second);
         const auto prn = static_cast<std::uint64_t>(when.first);
-        const int bits = chain_->tag_bits;
+        const int bits = chain.tag_bits;
         BitString hkroot;
         hkroot.add(s.root[0], 8);
         if (slots.empty() || hkroot.field(0, 8) == 0) return;
@@ -366,7 +388,7 @@ private:
             if (slots[i].flexible) flexible.add(info, 16);
             const std::uint64_t about = i == 0 ? prn : info >> 8, adkd = i == 0 ? 0 : info >> 4 & 15;
             const std::int64_t later = adkd == 12 ? 330 : 30;
-            if (cop == 0 || !keys_.contains(when.second + later)) continue;
+            if (cop == 0 || !disclosed_.contains(when.second + later)) continue;
             const bool as_ordered =
                 slots[i].flexible || (adkd == slots[i].adkd && (!slots[i].self || adkd == 4 || about == prn));
             const int sender = adkd == 4 ? when.first : static_cast<int>(about);
@@ -377,21 +399,22 @@ private:
             message.add(prn, 8).add(gst(when.second), 32).add(i + 1, 8).add(hkroot.field(0, 2), 2);
             message.add(*data, 0, data->size());
             BitString wanted;
-            wanted.add(mac(keys_[when.second + later], message));
+            wanted.add(mac(disclosed_[when.second + later], message));
             const bool right =
                 as_ordered && wanted.field(0, bits) == mack.field(at - static_cast<std::size_t>(bits), bits);
             ++(right ? verdict_.tags : verdict_.wrong_tags)[adkd];
         }
-        if (!keys_.contains(when.second + 30)) return;
+        if (!disclosed_.contains(when.second + 30)) return;
         BitString wanted;
-        wanted.add(mac(keys_[when.second + 30], flexible));
+        wanted.add(mac(disclosed_[when.second + 30], flexible));
         const bool same = wanted.field(0, 12) == mack.field(static_cast<std::size_t>(bits), 12);
         ++(same ? verdict_.sequences : verdict_.wrong_sequences);
     }
 
     std::map<When, Subframe> heard_;
-    std::optional<Chain> chain_;
-    std::map<std::int64_t, Octets> keys_;  // by the subframe that discloses them
+    std::map<std::uint64_t, Chain> chains_;                          // by CID
+    std::map<std::pair<std::uint64_t, std::int64_t>, Octets> keys_;  // by chain and the subframe that discloses them
+    std::map<std::int64_t, Octets> disclosed_;                       // by the subframe alone
     OsnmaVerdict verdict_;
 };
 

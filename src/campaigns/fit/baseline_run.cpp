@@ -3,28 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "base/geo/local_frame.hpp"
-#include "base/time/utc_time.hpp"
 #include "receiver/error_model/baseline.hpp"
-#include "run/emulator/assembly.hpp"
-#include "run/fault/run_observer.hpp"
-#include "run/scenario/scenario_file.hpp"
 
 namespace skyloop::inline campaigns {
 namespace {
 
-constexpr std::string_view scenario_name = "fit.toml";
-
 BaselineFractions fractions_of(const BaselineParameters& preset) {
     return {preset.iono_fraction, preset.tropo_fraction};
-}
-
-std::string navigation_text(const std::vector<std::filesystem::path>& files) {
-    std::string text;
-    for (const std::filesystem::path& file : files)
-        text += (text.empty() ? "" : ", ") + quoted_value(std::filesystem::absolute(file).string()).toml;
-    return text.empty() ? text : fmt::format("\n[sky]\nnavigation = [{}]\n", text);
 }
 
 // σ²_uere as the model itself computes it.
@@ -76,15 +64,11 @@ BaselineFractions BaselineFractions::calibrated() { return fractions_of(Baseline
 
 std::string baseline_scenario(const FitConditions& conditions, const BaselineFractions& fractions,
                               std::string_view remarks) {
-    const Geodetic& at = conditions.place;
-    return fmt::format(
-        "{}[run]\nstart = {}\nduration_s = {}\nseed = {}\n{}\n"
-        "[trajectory]\nkind = \"fixed\"\nat = [{:.9f}, {:.9f}, {:.4f}]\n\n"
-        "[model]\nname = \"baseline\"\n\n[model.baseline]\niono_fraction = {:.6g}\ntropo_fraction = {:.6g}\n\n"
-        "[[receiver]]\nrate_hz = 1\n",
-        remarks, utc_text(conditions.start, 3), std::ceil(conditions.length.value()), conditions.seed,
-        navigation_text(conditions.navigation), at.latitude.deg(), at.longitude.deg(),
-        at.height.above_ellipsoid.value(), fractions.iono, fractions.tropo);
+    return conditions_text(conditions, remarks) +
+           fmt::format(
+               "[model]\nname = \"baseline\"\n\n[model.baseline]\niono_fraction = {:.6g}\ntropo_fraction = {:.6g}\n\n"
+               "[[receiver]]\nrate_hz = 1\n",
+               fractions.iono, fractions.tropo);
 }
 
 std::vector<double> BaselineRun::horizontal_with(const BaselineFractions& other) const {
@@ -98,30 +82,18 @@ std::vector<double> BaselineRun::horizontal_with(const BaselineFractions& other)
 
 Result<BaselineRun> run_baseline(const FitConditions& conditions, const BaselineFractions& fractions,
                                  const DataFolders& data, const FitWatch& watch) {
-    const auto scenario = read_scenario(baseline_scenario(conditions, fractions), scenario_name);
+    const auto scenario = read_fit_scenario(baseline_scenario(conditions, fractions));
     if (!scenario) return fail(scenario.error());
-    RunMode mode;
-    mode.virtual_time = true;
-    mode.now = conditions.start;
-    mode.open_ports = false;
-    auto assembly = assemble(*scenario, data, mode);
-    if (!assembly) return fail(assembly.error());
     BaselineRun run;
     run.fractions = fractions;
     run.errors.reference = ReferenceKind::truth;
-    run.navigation = assembly->emulator->simulation().navigation().description();
-    run.warnings = assembly->warnings;
     ErrorKeeper keeper(run, scenario->model.baseline, watch);
-    assembly->emulator->add_observer(&keeper);
-    const std::atomic<bool> nobody{false};
-    const std::atomic<bool>& stop = watch.stop != nullptr ? *watch.stop : nobody;
-    assembly->emulator->run_until(assembly->end.value_or(conditions.start), stop);
-    if (stop) return fail(ErrorCode::outside, "stopped before its end");
+    auto notes = run_to_end(*scenario, conditions, data, keeper, watch);
+    if (!notes) return fail(notes.error());
+    run.navigation = std::move(notes->navigation);
+    run.warnings = std::move(notes->warnings);
     if (run.errors.horizontal.size() < 2)
-        return fail(ErrorCode::input,
-                    fmt::format("{}: the model has {} fixes with these orbits at {}; expected the day's merged "
-                                "file, of which the model takes the records of the two hours before",
-                                run.navigation, run.errors.horizontal.size(), utc_text(conditions.start)));
+        return fail(too_few_fixes(conditions, run.navigation, run.errors.horizontal.size()));
     return run;
 }
 

@@ -1,18 +1,11 @@
 /// The article's sensor model, run where and when a receiver stood.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "base/core/result.hpp"
-#include "base/geo/geodetic.hpp"
-#include "base/time/gps_time.hpp"
-#include "run/emulator/data_folders.hpp"
+#include "campaigns/fit/fit_run.hpp"
 #include "study/analysis/statistics.hpp"
 
 namespace skyloop::inline campaigns {
@@ -27,15 +20,6 @@ struct BaselineFractions {
 };
 /// The largest that the keys take.
 inline constexpr double largest_fraction = 10;
-
-/// Where, when and under which sky.
-struct FitConditions {
-    Geodetic place;
-    GpsTime start;
-    Seconds length;
-    std::vector<std::filesystem::path> navigation{};  ///< RINEX files of that day; empty: the nominal sky
-    std::uint64_t seed = 1;
-};
 
 /// A scenario of the model at 1 Hz, as `skyloop simulate` reads it. Files are named by absolute paths.
 /// @param remarks lines of comment at its top, each with its "# " and end
@@ -61,12 +45,6 @@ struct BaselineRun {
 
     /// The horizontal radial error of the same run with other fractions, m: E = PDOP σ_uere scales each epoch's noise.
     [[nodiscard]] std::vector<double> horizontal_with(const BaselineFractions& other) const;
-};
-
-/// Who waits for a run.
-struct FitWatch {
-    const std::atomic<bool>* stop = nullptr;  ///< true: it is to end; null: nobody stops it
-    std::function<void()> on_epoch{};         ///< called after each; may be empty
 };
 
 /// Runs baseline_scenario() to its end, on the virtual clock and without wires. Fails as the scenario's reader and

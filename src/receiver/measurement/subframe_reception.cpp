@@ -112,12 +112,16 @@ struct Sender {
     }
     [[nodiscard]] std::vector<std::uint32_t> d1(const KeplerEphemeris& record) const {
         const auto subframe = subframe_ending(bdt_week_and_tow(end).tow);
-        if (!subframe || *subframe > 3) return {};
+        if (!subframe) return {};
+        if (*subframe > 3) return as_vector(d1_system_subframe({&sent, leap_seconds}, *subframe, end));
         return as_vector(d1_subframe(record, sent.ionosphere().beidou, *subframe, end));
     }
     [[nodiscard]] std::vector<std::uint32_t> d2(const KeplerEphemeris& record) const {
         const auto page = d2_page_ending(end);
-        if (!page) return {};
+        if (!page) {
+            const auto system = d2_system_subframe_ending({&sent, leap_seconds}, end);
+            return system ? as_vector(*system) : std::vector<std::uint32_t>();
+        }
         return as_vector(d2_page(record, sent.ionosphere().beidou, *page, end));
     }
     [[nodiscard]] std::vector<std::uint32_t> cnav(const KeplerEphemeris& record, Signal signal) const {

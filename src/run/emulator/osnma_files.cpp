@@ -2,12 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace skyloop::inline run {
 
 std::shared_ptr<const OsnmaKeys> osnma_keys_of(const Scenario& scenario, GpsTime start) {
     if (!scenario.sky.osnma) return nullptr;
     OsnmaSettings settings{scenario.run.seed_of_sky(), start};
-    if (scenario.sky.osnma_new_key) settings.new_key = advanced(start, *scenario.sky.osnma_new_key);
+    const OsnmaEvents& events = scenario.sky.osnma_events;
+    for (const auto& [change, when] : {std::pair(OsnmaChange::new_key, events.new_key),
+                                       {OsnmaChange::new_chain, events.new_chain},
+                                       {OsnmaChange::revoked_chain, events.revoked_chain},
+                                       {OsnmaChange::revoked_key, events.revoked_key},
+                                       {OsnmaChange::alert, events.alert}})
+        if (when) settings.change = change, settings.at = advanced(start, *when);
     return std::make_shared<const OsnmaKeys>(settings);
 }
 

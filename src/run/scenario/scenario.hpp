@@ -93,6 +93,11 @@ struct PreciseFiles {
     std::filesystem::path antennas;             ///< ANTEX; empty: signals leave from the centre of mass
 };
 
+/// What happens to the keys of OSNMA, and when after the start; at most one of them.
+struct OsnmaEvents {
+    std::optional<Seconds> new_key, new_chain, revoked_chain, revoked_key, alert;
+};
+
 struct SkySettings {
     std::vector<std::filesystem::path> navigation;  ///< empty: the nominal sky
     bool automatic_navigation = false;              ///< that of the start's day in the cache, where there is one
@@ -103,7 +108,7 @@ struct SkySettings {
     std::optional<EphemerisRule> ephemeris_rule;    ///< nothing: the model's own rule
     std::optional<Seconds> ephemeris_validity;      ///< nothing: each system's own
     bool osnma = false;                             ///< Galileo's pages are authenticated
-    std::optional<Seconds> osnma_new_key;           ///< after the start, of a change of the public key; nothing: none
+    OsnmaEvents osnma_events;
 };
 
 /// Paths are kept as what was asked for; they become a Trajectory when the start time is known. The heading, clockwise

@@ -158,6 +158,37 @@ void read_precise_files(TableReader& sky, PreciseFiles& files, const std::filesy
         if (sky.has(key)) sky.mistake(key, "comes beside the orbits that it belongs to; expected sky.orbits, too");
 }
 
+void read_osnma(TableReader& sky, SkySettings& settings) {
+    sky.boolean("osnma", settings.osnma,
+                "Galileo's E1-B pages are authenticated by OSNMA with test keys, which the recording's folder tells");
+    OsnmaEvents& events = settings.osnma_events;
+    constexpr NumberRange times{0, longest_run_s};
+    sky.where(settings.osnma, "with osnma = true", [&] {
+        sky.quantity(
+            "osnma_new_key_s", events.new_key, times,
+            {"when the second public key signs, after the start; announced a quarter of an hour before", "never"});
+        sky.quantity(
+            "osnma_new_chain_s", events.new_chain, times,
+            {"when the second chain goes on; announced as the end of the first a quarter of an hour before", "never"});
+        sky.quantity("osnma_revoked_chain_s", events.revoked_chain, times,
+                     {"when the chain is revoked; the second serves a quarter of an hour later", "never"});
+        sky.quantity(
+            "osnma_revoked_key_s", events.revoked_key, times,
+            {"when public key and chain are revoked; the second ones serve a quarter of an hour later", "never"});
+        sky.quantity("osnma_alert_s", events.alert, times,
+                     {"from when on the alert message is all that is sent", "never"});
+    });
+    if (sky.recording()) return;
+    std::string_view first;
+    for (const std::string_view key :
+         {"osnma_new_key_s", "osnma_new_chain_s", "osnma_revoked_chain_s", "osnma_revoked_key_s", "osnma_alert_s"}) {
+        if (!sky.has(key)) continue;
+        if (!first.empty())
+            sky.mistake(key, fmt::format("is there beside {}; expected one change of OSNMA's keys", first));
+        first = key;
+    }
+}
+
 void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesystem::path& folder) {
     read_files(
         sky, "navigation", settings.navigation, folder,
@@ -182,13 +213,7 @@ void read_sky_keys(TableReader& sky, SkySettings& settings, const std::filesyste
              {"the newest healthy record that is not of the future, or the nearest one", "by the model"});
     sky.quantity("ephemeris_validity_s", settings.ephemeris_validity, {1, 14 * 86400.0},
                  {"largest age of any record", "by the system"});
-    sky.boolean("osnma", settings.osnma,
-                "Galileo's E1-B pages are authenticated by OSNMA with test keys, which the recording's folder tells");
-    sky.where(settings.osnma, "with osnma = true", [&] {
-        sky.quantity(
-            "osnma_new_key_s", settings.osnma_new_key, {0, longest_run_s},
-            {"when the second public key signs, after the start; announced a quarter of an hour before", "never"});
-    });
+    read_osnma(sky, settings);
 }
 
 // What a run may be refused for when it is put together.

@@ -1,5 +1,6 @@
 #include "world/gnss/broadcast_beidou.hpp"
 
+#include "detail/beidou_words.hpp"
 #include "detail/broadcast_fields.hpp"
 #include "world/gnss/broadcast_lnav.hpp"
 
@@ -10,15 +11,6 @@ constexpr double d1_time_step_s = 8;  // of toc and toe
 constexpr int toe_bits = 17, toe_bits_before = 2;
 
 double bdt_tow(GpsTime time) { return bdt_week_and_tow(time).tow_seconds(); }
-
-// Preamble, number and time, of D1 and D2 alike.
-void put_beidou_head(BitWriter& bits, int subframe, GpsTime start) {
-    constexpr std::uint64_t preamble = 0b11100010010;
-    bits.put(preamble, 11);
-    bits.put(0, 4);
-    bits.put_signed(subframe, 3);
-    put_scaled_unsigned(bits, bdt_tow(start), 20, 1);
-}
 
 BitWriter d1_toe_field(const KeplerEphemeris& r) {
     BitWriter bits;
@@ -78,18 +70,6 @@ std::uint32_t d1_parity(std::uint32_t eleven) {
     return rest;
 }
 
-D1Words with_d1_parity(const BitWriter& bits) {
-    constexpr int first_bits = 26, other_bits = 22, half = 11;
-    const auto field = [&bits](std::size_t at, int width) { return static_cast<std::uint32_t>(bits.field(at, width)); };
-    D1Words words{};
-    words[0] = field(0, first_bits) << 4 | d1_parity(field(first_bits - half, half));
-    for (std::size_t i = 1; i < words.size(); ++i) {
-        const std::size_t at = first_bits + (i - 1) * other_bits;
-        words[i] = field(at, other_bits) << 8 | d1_parity(field(at, half)) << 4 | d1_parity(field(at + half, half));
-    }
-    return words;
-}
-
 // Of D2's subframe 1 (section 5.3, table 5-16 and figures 5-14-1 to 5-14-10): how many bits of the clock, ionosphere
 // and orbit each page holds of the 72 between its number and the end of word 5; what is left is reserved, of page 3
 // before a_0, too. Words 6 to 10 are reserved throughout.
@@ -124,6 +104,26 @@ BitWriter d2_fields(const KeplerEphemeris& r, const KlobucharCoefficients& c, Gp
 }
 
 }  // namespace
+
+void put_beidou_head(BitWriter& bits, int subframe, GpsTime sow) {
+    constexpr std::uint64_t preamble = 0b11100010010;
+    bits.put(preamble, 11);
+    bits.put(0, 4);
+    bits.put_signed(subframe, 3);
+    put_scaled_unsigned(bits, bdt_tow(sow), 20, 1);
+}
+
+D1Words with_d1_parity(const BitWriter& bits) {
+    constexpr int first_bits = 26, other_bits = 22, half = 11;
+    const auto field = [&bits](std::size_t at, int width) { return static_cast<std::uint32_t>(bits.field(at, width)); };
+    D1Words words{};
+    words[0] = field(0, first_bits) << 4 | d1_parity(field(first_bits - half, half));
+    for (std::size_t i = 1; i < words.size(); ++i) {
+        const std::size_t at = first_bits + (i - 1) * other_bits;
+        words[i] = field(at, other_bits) << 8 | d1_parity(field(at, half)) << 4 | d1_parity(field(at + half, half));
+    }
+    return words;
+}
 
 D1Words d1_subframe(const KeplerEphemeris& record, const std::optional<KlobucharCoefficients>& ionosphere, int subframe,
                     GpsTime end) {

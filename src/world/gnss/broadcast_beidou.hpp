@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/time/utc_time.hpp"
 #include "world/gnss/ephemeris.hpp"
 
 namespace skyloop::inline world {
@@ -37,5 +38,22 @@ std::optional<int> d2_page_ending(GpsTime end);
 /// @param end when the subframe ends; it tells of its start
 D1Words d2_page(const KeplerEphemeris& record, const std::optional<KlobucharCoefficients>& ionosphere, int page,
                 GpsTime end);
+
+/// What the satellites tell of each other and of UTC.
+struct BeidouSystemData {
+    const NavigationSource* source = nullptr;  ///< null: almanacs of nobody
+    const LeapSeconds& leap_seconds;
+};
+
+/// Subframes 4 and 5 of D1 (section 5.2.4.14 to 5.2.4.19, figures 5-11 and 5-12): a page each frame, 24 of them in
+/// twelve minutes; almanacs of C01 to C30, in three times twelve minutes those of C31 to C63, health, and UTC. What
+/// almanacs tell is of the last whole 4096 s; satellites without a record have zeros.
+/// @param subframe 4 or 5
+/// @param end when the subframe ends
+D1Words d1_system_subframe(const BeidouSystemData& data, int subframe, GpsTime end);
+
+/// The same in subframe 5 of D2, of which a frame each 3 s has one, in six minutes (section 5.3.3, table 5-17). Nothing
+/// where none ends, and for pages of the ionospheric grid and reserved ones.
+std::optional<D1Words> d2_system_subframe_ending(const BeidouSystemData& data, GpsTime end);
 
 }  // namespace skyloop::inline world

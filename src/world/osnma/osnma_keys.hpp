@@ -13,12 +13,26 @@
 
 namespace skyloop::inline world {
 
+/// What happens to keys (Receiver Guidelines 1.3, section 6; SIS ICD 1.1, table 4).
+enum class OsnmaChange {
+    none,
+    new_key,        ///< another public key signs
+    new_chain,      ///< the chain ends and another one goes on
+    revoked_chain,  ///< the chain is not to be used any more, another one follows
+    revoked_key,    ///< neither public key nor chain are to be used any more, others follow
+    alert,          ///< OSNMA is not to be used any more
+};
+
 /// What OSNMA is made from.
 struct OsnmaSettings {
-    std::uint64_t seed = 0;            ///< of all keys: they are for tests
-    GpsTime start;                     ///< of the run; the chain begins with the whole hour that is an hour before
-    std::optional<GpsTime> new_key{};  ///< from then on the root key is signed by the second public key; nothing: never
+    std::uint64_t seed = 0;  ///< of all keys: they are for tests
+    GpsTime start;           ///< of the run; the chain begins with the whole hour that is an hour before
+    OsnmaChange change = OsnmaChange::none;
+    GpsTime at{};  ///< of the change
 };
+
+/// NMA status (table 1).
+enum class OsnmaStatus : std::uint8_t { operational = 2, do_not_use = 3 };
 
 inline constexpr int osnma_block_bits = 104;
 
@@ -29,22 +43,25 @@ struct OsnmaMessage {
     BitWriter bits{};         ///< whole blocks
 };
 
-/// The keys of a run. The status is operational, the chain number 1, with keys of 128 and tags of 40 bits.
+/// The keys of a run: chains with keys of 128 and tags of 40 bits.
 ///
-/// A new public key is announced for a quarter of an hour (status of the key "new public key"; DSM-PKR and DSM-KROOT by
-/// turns), then the root key is signed by it, still with that status for another quarter (Receiver Guidelines 1.3,
-/// public key renewal).
+/// Beforehand, for a quarter of an hour, a new public key is announced (DSM-PKR and DSM-KROOT by turns), and a new
+/// chain (its root in place of the old one's). What is revoked is so from the instant on: for a quarter of an hour the
+/// status is "don't use" and the successors are told, for another quarter they serve and the status of the keys still
+/// says what has happened. An alert message is sent alone, and nothing follows.
 class OsnmaKeys {
 public:
     explicit OsnmaKeys(const OsnmaSettings& settings);
     ~OsnmaKeys();
 
-    [[nodiscard]] const TeslaChain& chain() const { return chain_; }
+    /// The chain 1, or 2 where there is a change of it.
+    [[nodiscard]] const TeslaChain& chain(int number) const { return chains_[static_cast<std::size_t>(number - 1)]; }
+    /// The key that is disclosed in a subframe, of the chain in force then; nothing outside of it.
+    [[nodiscard]] std::optional<TeslaKey> key(GpsTime subframe) const;
     /// What the subframes of all satellites tell blocks of: the signed root key; in the first six and a half minutes of
     /// an hour the public key.
     [[nodiscard]] const OsnmaMessage& message(GpsTime subframe) const;
-    /// Status, 2 bits: operational.
-    static constexpr std::uint64_t status = 2;
+    [[nodiscard]] OsnmaStatus status(GpsTime subframe) const;
 
     /// How many public keys this run uses: 1, with a change of it 2.
     [[nodiscard]] int public_keys() const;
@@ -55,13 +72,17 @@ public:
 
 private:
     struct Secrets;
-    [[nodiscard]] OsnmaMessage root_message(int key_status, int number, int id) const;
-    [[nodiscard]] OsnmaMessage key_message(int key_status, int number, int id) const;
+    struct Part;
+    [[nodiscard]] static std::vector<Part> parts_of(OsnmaChange change);
+    [[nodiscard]] std::size_t part_at(GpsTime subframe) const;
+    [[nodiscard]] OsnmaMessage root_message(const Part& part, int id) const;
+    [[nodiscard]] OsnmaMessage key_message(const Part& part) const;
 
     OsnmaSettings settings_;
-    TeslaChain chain_;
+    std::vector<TeslaChain> chains_;
     std::unique_ptr<const Secrets> secrets_;
-    std::vector<OsnmaMessage> roots_, keys_;  // by the four parts of a change
+    std::vector<Part> parts_;                 // in the order of time
+    std::vector<OsnmaMessage> roots_, keys_;  // of each of them
 };
 
 }  // namespace skyloop::inline world

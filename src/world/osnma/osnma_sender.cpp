@@ -125,7 +125,7 @@ OsnmaSender::Tag OsnmaSender::tag(const Context& context, int sender, const TagP
     message.put_signed(sender, 8);
     message.put(osnma_time(context.subframe), 32);
     message.put_signed(place.number, 8);
-    message.put(OsnmaKeys::status, 2);
+    message.put(static_cast<std::uint64_t>(keys_->status(context.subframe)), 2);
     const BitWriter& authenticated = data(context, {place.of, context.subframe - osnma_subframe});
     append(message, authenticated, 0, authenticated.size());
     const Sha256Digest mac = hmac_sha256(key, message.bytes());
@@ -140,9 +140,8 @@ OsnmaSender::Tag OsnmaSender::tag(const Context& context, int sender, const TagP
 // MACK (section 3.3): the first tag, the code of what the flexible ones are about, the other tags, and the key of the
 // subframe before.
 BitWriter OsnmaSender::tags(const Context& context, int sender) {
-    const auto key_of = [&](std::int64_t later) {
-        return keys_->chain().key(context.subframe + later * osnma_subframe);
-    };
+    // Tags are made with the key that will be disclosed, also where another chain is in force by then.
+    const auto key_of = [&](std::int64_t later) { return keys_->key(context.subframe + later * osnma_subframe); };
     const auto key = key_of(0), next = key_of(1), slow = key_of(1 + slow_delay);
     BitWriter bits, flexible;
     if (!key || !next || !slow) {

@@ -57,6 +57,18 @@ TEST(ScenarioMistakes, NumbersOutOfRangeSayTheRange) {
     EXPECT_THAT(mistakes_of("[run]\nspeed = 0"), HasSubstr("is 0; expected a number from 0.001"));
 }
 
+TEST(ScenarioMistakes, KeysOfOsnmaChangeOnce) {
+    EXPECT_EQ(
+        mistakes_of("[sky]\nosnma = true\nosnma_new_key_s = 60\nosnma_alert_s = 90"),
+        "test.toml:4:17: sky.osnma_alert_s: is there beside osnma_new_key_s; expected one change of OSNMA's keys");
+    const auto alerted = scenario_of("[sky]\nosnma = true\nosnma_alert_s = 90");
+    EXPECT_EQ(alerted.sky.osnma_events.alert, Seconds(90));
+    EXPECT_FALSE(alerted.sky.osnma_events.new_key);
+    EXPECT_EQ(scenario_of("[sky]\nosnma = true\nosnma_revoked_chain_s = 5").sky.osnma_events.revoked_chain, Seconds(5));
+    EXPECT_EQ(scenario_of("[sky]\nosnma = true\nosnma_revoked_key_s = 5").sky.osnma_events.revoked_key, Seconds(5));
+    EXPECT_EQ(scenario_of("[sky]\nosnma = true\nosnma_new_chain_s = 5").sky.osnma_events.new_chain, Seconds(5));
+}
+
 TEST(ScenarioMistakes, NanAndInfinityAreNoNumbers) {
     EXPECT_THAT(mistakes_of("[sky]\nelevation_mask_deg = nan"), HasSubstr("is nan; expected a number from 0 to 90"));
     EXPECT_THAT(mistakes_of("[run]\nduration_s = inf"), HasSubstr("is inf; expected"));

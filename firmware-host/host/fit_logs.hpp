@@ -1,0 +1,75 @@
+/// What both kinds of `skyloop fit` have in common: options, the logs, progress, figures.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/core/result.hpp"
+#include "campaigns/fit/fit_run.hpp"
+#include "messages.hpp"
+#include "study/analysis/standing_log.hpp"
+
+namespace skyloop::host {
+
+/// What was typed.
+struct FitOptions {
+    std::string log, start, reference, out = ".";
+    std::string model = "baseline", preset = "consumer", board, surroundings;  ///< the last three of modern alone
+    std::vector<std::string> constellations;
+    std::vector<std::string> nav, check;
+    double interval = 0;  ///< s; 0: as the logs say
+    std::size_t skip = 0, count = 0;
+    bool check_rest = false;
+    Verbosity verbosity;
+};
+
+/// Of one terminal line, rewritten, and asked after each epoch whether the user wants to stop.
+class FitProgress {
+public:
+    explicit FitProgress(const Messages& messages);
+    ~FitProgress() { clear(); }
+    FitProgress(const FitProgress&) = delete;
+    FitProgress& operator=(const FitProgress&) = delete;
+
+    void expect(double epochs) { expected_ += epochs; }
+    [[nodiscard]] FitWatch watch() {
+        return {&stop_, [this] { count(); }};
+    }
+    void clear() const;
+
+private:
+    void count();
+
+    bool shown_;
+    std::atomic<bool> stop_{false};
+    std::uint64_t done_ = 0;
+    double expected_ = 1;
+    std::chrono::steady_clock::time_point last_{};
+};
+
+/// What is fitted to, and what the fit is held against.
+struct FitLogs {
+    StandingLog log;
+    std::vector<StandingLog> checks;
+};
+/// The scenario and the figure that will be written. Fails with `usage` where somebody else wrote such files, and for
+/// options that contradict each other.
+Result<std::vector<std::filesystem::path>> fit_files(const FitOptions& options);
+/// Reads LOG, --check and --check-rest. Fails with a line on what is no log at rest.
+Result<FitLogs> read_fit_logs(const FitOptions& options, const Messages& messages);
+
+FitConditions conditions_of(const StandingLog& log, const FitOptions& options);
+std::string figures_text(const SampleStatistics& s);
+SampleStatistics figures_of(const std::vector<double>& values);
+/// The article's percentage of what the model makes against the log.
+ComparisonPercent percent_of(const SampleStatistics& model, const StandingLog& log);
+void print_log(const StandingLog& log);
+
+/// `skyloop fit --model modern`, once the options are known to be right together.
+int fit_modern_log(const FitOptions& options);
+
+}  // namespace skyloop::host
