@@ -253,4 +253,4 @@ class MeshtasticAiroha(Meshtastic):
     name = "Meshtastic for the T1000-E"
     airoha = "$PAIR382,1*2E"
     after_power_on = 0.0
-    scenario = "[receiver]\npower_up = true\n"
+    scenario = "[[receiver]]\npower_up = true\n"

@@ -45,6 +45,7 @@ void talk_to(MakerKind kind, const std::vector<std::string>& lines) {
     const NavigationState state;
     const FirmwareFaults sound;
     for (const std::string& line : lines) {
+        if (line.empty()) continue;
         // The checksum of a mutated line is seldom right: its body counts.
         const Bytes whole = to_bytes(Sentence(line.substr(1, line.rfind('*') - 1)).finish());
         for (const PortId port : {PortId::uart1, PortId::usb})

@@ -42,10 +42,10 @@ struct CasicReceiver : DialogueReceiver {
     }
 };
 
-std::string acknowledged(int id) { return "CASIC ACK-ACK class=6 id=" + std::to_string(id); }
-std::string refused(int id) { return "CASIC ACK-NACK class=6 id=" + std::to_string(id); }
+std::string casic_acknowledged(int id) { return "CASIC ACK-ACK class=6 id=" + std::to_string(id); }
+std::string casic_refused(int id) { return "CASIC ACK-NACK class=6 id=" + std::to_string(id); }
 
-Bytes rate_of(std::uint8_t message_class, std::uint8_t id, std::uint16_t rate) {
+Bytes casic_rate_of(std::uint8_t message_class, std::uint8_t id, std::uint16_t rate) {
     CasicCfgMsg message;
     message.message_class = message_class;
     message.id = id;
@@ -156,19 +156,20 @@ TEST(Casic, AcknowledgesEachConfigurationFrame) {
     CasicReceiver receiver;
     EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x00}, {})),
                 ElementsAre("CASIC CFG-PRT port=0 protocols=51 mode=2240 baud=9600",
-                            "CASIC CFG-PRT port=1 protocols=51 mode=2240 baud=9600", acknowledged(0)));
+                            "CASIC CFG-PRT port=1 protocols=51 mode=2240 baud=9600", casic_acknowledged(0)));
     EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x04}, {})),
-                ElementsAre("CASIC CFG-RATE interval_s=1", acknowledged(4)));
+                ElementsAre("CASIC CFG-RATE interval_s=1", casic_acknowledged(4)));
     EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x01}, {})), SizeIs(16));
     CasicCfgRate rate;
     rate.interval = 200;
-    EXPECT_THAT(receiver.replies(encode_casic(rate)), ElementsAre(acknowledged(4)));
+    EXPECT_THAT(receiver.replies(encode_casic(rate)), ElementsAre(casic_acknowledged(4)));
     EXPECT_EQ(receiver.receiver().settings().navigation_period, 200ms);
     rate.interval = 33;
-    EXPECT_THAT(receiver.replies(encode_casic(rate)), ElementsAre(refused(4)));
-    EXPECT_THAT(receiver.replies(rate_of(0x4E, 0x0D, 1)), ElementsAre(refused(1))) << "DHV";
-    EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x04}, Bytes(8))), ElementsAre(refused(4))) << "too long";
-    EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x33}, Bytes(4))), ElementsAre(refused(0x33)));
+    EXPECT_THAT(receiver.replies(encode_casic(rate)), ElementsAre(casic_refused(4)));
+    EXPECT_THAT(receiver.replies(casic_rate_of(0x4E, 0x0D, 1)), ElementsAre(casic_refused(1))) << "DHV";
+    EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x04}, Bytes(8))), ElementsAre(casic_refused(4)))
+        << "too long";
+    EXPECT_THAT(receiver.replies(encode_casic_frame({0x06, 0x33}, Bytes(4))), ElementsAre(casic_refused(0x33)));
     EXPECT_THAT(receiver.replies(encode_casic_frame({0x0A, 0x04}, {})), IsEmpty()) << "MON-VER, of version 5";
     Bytes wrong = encode_casic(rate);
     wrong.back() ^= 1;
@@ -196,7 +197,7 @@ TEST(Casic, SetsTheNavigationEngine) {
     navx.dynamic_model = 3;
     navx.fix_mode = 3;
     navx.systems = 7;
-    EXPECT_THAT(receiver.replies(encode_casic(navx)), ElementsAre(acknowledged(7)));
+    EXPECT_THAT(receiver.replies(encode_casic(navx)), ElementsAre(casic_acknowledged(7)));
     EXPECT_TRUE(receiver.receiver().settings().tracks(Constellation::glonass, Signal::g1));
     const auto told = receiver.replies(encode_casic_frame({0x06, 0x07}, {}));
     ASSERT_THAT(told, SizeIs(2));
@@ -206,18 +207,18 @@ TEST(Casic, SetsTheNavigationEngine) {
     navx.apply = 0x0141;
     navx.least_elevation = 15;
     navx.systems = 0;
-    EXPECT_THAT(receiver.replies(encode_casic(navx)), ElementsAre(refused(7)));
+    EXPECT_THAT(receiver.replies(encode_casic(navx)), ElementsAre(casic_refused(7)));
     EXPECT_NEAR(receiver.receiver().settings().elevation_mask.deg(), 5, 1e-12) << "all or nothing";
     navx.apply = 0x0040;
-    EXPECT_THAT(receiver.replies(encode_casic(navx)), ElementsAre(acknowledged(7)));
+    EXPECT_THAT(receiver.replies(encode_casic(navx)), ElementsAre(casic_acknowledged(7)));
     EXPECT_NEAR(receiver.receiver().settings().elevation_mask.deg(), 15, 1e-12);
 }
 
 TEST(Casic, SendsBinaryMessages) {
     CasicReceiver receiver;
     for (const int id : {0x01, 0x02, 0x03, 0x10, 0x20, 0x21, 0x22})
-        EXPECT_THAT(receiver.replies(rate_of(0x01, static_cast<std::uint8_t>(id), 1)),
-                    testing::Contains(acknowledged(1)));
+        EXPECT_THAT(receiver.replies(casic_rate_of(0x01, static_cast<std::uint8_t>(id), 1)),
+                    testing::Contains(casic_acknowledged(1)));
     receiver.wait(1s);
     receiver.forget();
     receiver.wait(1s);
@@ -252,9 +253,9 @@ TEST(Casic, SendsBinaryMessages) {
 
 TEST(Casic, SendsAMessageOnceAtOnce) {
     CasicReceiver receiver;
-    EXPECT_THAT(receiver.replies(rate_of(0x01, 0x03, 0xFFFF)),
-                ElementsAre(testing::StartsWith("CASIC NAV-PV "), acknowledged(1)));
-    receiver.replies(rate_of(0x4E, 0x04, 0xFFFF));
+    EXPECT_THAT(receiver.replies(casic_rate_of(0x01, 0x03, 0xFFFF)),
+                ElementsAre(testing::StartsWith("CASIC NAV-PV "), casic_acknowledged(1)));
+    receiver.replies(casic_rate_of(0x4E, 0x04, 0xFFFF));
     EXPECT_THAT(receiver.lines("$GNRMC"), SizeIs(1));
     receiver.forget();
     receiver.wait(3s);
@@ -264,7 +265,7 @@ TEST(Casic, SendsAMessageOnceAtOnce) {
 TEST(Casic, SilencesOneProtocolOfAPort) {
     CasicReceiver receiver;
     receiver.say("PCAS03,1,0,0,0,0,0,0,0");
-    receiver.replies(rate_of(0x01, 0x03, 1));
+    receiver.replies(casic_rate_of(0x01, 0x03, 1));
     CasicCfgPrt port;
     port.port = 0xFF;
     port.protocols = 0x13;
@@ -278,7 +279,7 @@ TEST(Casic, SilencesOneProtocolOfAPort) {
     EXPECT_THAT(receiver.lines("$G"), IsEmpty());
     EXPECT_THAT(receiver.heard<CasicNavPv>(), SizeIs(2));
     port.mode = 0x0000;
-    EXPECT_THAT(receiver.replies(encode_casic(port)), testing::Contains(refused(0))) << "five bits";
+    EXPECT_THAT(receiver.replies(encode_casic(port)), testing::Contains(casic_refused(0))) << "five bits";
 }
 
 TEST(Casic, RestartsByAFrame) {
@@ -290,7 +291,7 @@ TEST(Casic, RestartsByAFrame) {
     EXPECT_THAT(receiver.lines("$GPTXT,01,01,02,MA=CASIC"), SizeIs(1));
     restart.mode = 9;
     receiver.wait(3s);
-    EXPECT_THAT(receiver.replies(encode_casic(restart)), testing::Contains(refused(2)));
+    EXPECT_THAT(receiver.replies(encode_casic(restart)), testing::Contains(casic_refused(2)));
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ using testing::SizeIs;
 using testing::StartsWith;
 
 // What comes within 100 ms of a line.
-std::vector<std::string> after(DialogueReceiver& receiver, const std::string& line, const std::string& begin = "$") {
+std::vector<std::string> after_line(DialogueReceiver& receiver, const std::string& line,
+                                    const std::string& begin = "$") {
     receiver.forget();
     receiver.write(to_bytes(line + "\r\n"));
     receiver.wait(100ms);
@@ -29,39 +30,39 @@ struct Uc6580 : DialogueReceiver {
 TEST(Uc6580, AnswersWithAndWithoutAChecksum) {
     Uc6580 receiver;
     const std::string told = "$PDTINFO,UC6580I-00,G1B1L1E1,V00,R6.1.1.1Build9074,2400615000514,20250427080308004*4D";
-    EXPECT_THAT(after(receiver, "$PDTINFO"), Contains(told));
-    EXPECT_THAT(after(receiver, "$PDTINFO*4E"), Contains(told));
-    EXPECT_THAT(after(receiver, "$pdtinfo"), Contains(told));
-    EXPECT_THAT(after(receiver, "garbage\xFF$PDTINFO"), Contains(told));
-    EXPECT_THAT(after(receiver, "$PDTINFO*00"), Contains("$FAIL,1*1F"));
-    EXPECT_THAT(after(receiver, "$CFGSYS"), Contains("$CFGSYS,H55155*4E"));
+    EXPECT_THAT(after_line(receiver, "$PDTINFO"), Contains(told));
+    EXPECT_THAT(after_line(receiver, "$PDTINFO*4E"), Contains(told));
+    EXPECT_THAT(after_line(receiver, "$pdtinfo"), Contains(told));
+    EXPECT_THAT(after_line(receiver, "garbage\xFF$PDTINFO"), Contains(told));
+    EXPECT_THAT(after_line(receiver, "$PDTINFO*00"), Contains("$FAIL,1*1F"));
+    EXPECT_THAT(after_line(receiver, "$CFGSYS"), Contains("$CFGSYS,H55155*4E"));
 }
 
 TEST(Uc6580, RefusesWrongParametersAndLeavesOthersCommandsAlone) {
     Uc6580 receiver;
     for (const char* const wrong :
          {"$CFGSYS,35155", "$CFGSYS,hXYZ", "$CFGMSG,0,3", "$CFGMSG,0,99,1", "$CFGMSG,7,0,0", "$CFGMSG,0,3,x"})
-        EXPECT_THAT(after(receiver, wrong), Contains("$FAIL,0*1E")) << wrong;
+        EXPECT_THAT(after_line(receiver, wrong), Contains("$FAIL,0*1E")) << wrong;
     for (const char* const other : {"$PCAS06,1*1A", "$PAIR021*39", "$CFGPRT", "PDTINFO", ""})
-        EXPECT_THAT(after(receiver, other, "$F"), IsEmpty()) << other;
-    EXPECT_THAT(after(receiver, "$CFGMSG," + std::string(4000, '1')), Not(Contains("$OK*04")));
-    EXPECT_THAT(after(receiver, "$CFGSYS"), Contains("$CFGSYS,H55155*4E"));
+        EXPECT_THAT(after_line(receiver, other, "$F"), IsEmpty()) << other;
+    EXPECT_THAT(after_line(receiver, "$CFGMSG," + std::string(4000, '1')), Not(Contains("$OK*04")));
+    EXPECT_THAT(after_line(receiver, "$CFGSYS"), Contains("$CFGSYS,H55155*4E"));
 }
 
 TEST(Uc6580, SetsRatesAndSystems) {
     Uc6580 receiver;
-    EXPECT_THAT(after(receiver, "$CFGMSG,0,3,0"), Contains("$OK*04"));
-    EXPECT_THAT(after(receiver, "$CFGMSG,0,2,0,1*18"), Contains("$OK*04"));
-    EXPECT_THAT(after(receiver, "$CFGMSG,6,0,0"), Contains("$OK*04"));
+    EXPECT_THAT(after_line(receiver, "$CFGMSG,0,3,0"), Contains("$OK*04"));
+    EXPECT_THAT(after_line(receiver, "$CFGMSG,0,2,0,1*18"), Contains("$OK*04"));
+    EXPECT_THAT(after_line(receiver, "$CFGMSG,6,0,0"), Contains("$OK*04"));
     receiver.wait(1s);
     receiver.forget();
     receiver.wait(2s);
     EXPECT_THAT(receiver.lines("$GPGSV"), IsEmpty());
     EXPECT_THAT(receiver.lines("$GNGSA"), IsEmpty());
     EXPECT_THAT(receiver.lines("$GNGGA"), SizeIs(2));
-    EXPECT_THAT(after(receiver, "$CFGSYS,h35155"), Contains("$OK*04"));
+    EXPECT_THAT(after_line(receiver, "$CFGSYS,h35155"), Contains("$OK*04"));
     receiver.wait(1500ms);
-    EXPECT_THAT(after(receiver, "$CFGSYS"), Contains(StartsWith("$CFGSYS,H35155*"))) << "after the restart";
+    EXPECT_THAT(after_line(receiver, "$CFGSYS"), Contains(StartsWith("$CFGSYS,H35155*"))) << "after the restart";
 }
 
 TEST(Ag3335, HearsNothingButItsLockForSecondsAfterAStart) {
