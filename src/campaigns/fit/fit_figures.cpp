@@ -27,6 +27,7 @@ SpreadFigures spread_figures(std::span<const std::vector<double>* const> axes, c
         double sum = 0;
         bool complete = true;
         for (std::size_t axis = 0; axis < courses.size(); ++axis) {
+            if (variances[axis] == 0) continue;
             const auto one = courses[axis].at_lag(fitted_lags[lag]);
             complete = complete && one;
             if (one) sum += variances[axis] * one->value;

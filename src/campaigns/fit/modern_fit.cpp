@@ -186,7 +186,8 @@ private:
         const double loss = ModernSettings::of(request_.receiver.preset).propagation.link.implementation_loss.value();
         ModernFitSettings settings = trial.settings;
         settings.weaker = Decibels(std::round(100 * std::max(weaker, -loss)) / 100);
-        constexpr double least_db = 0.5;
+        constexpr double least_db =
+            1.5;  // the mean of satellites, each with a power of its own, is off by half of that
         return std::abs(settings.weaker.value()) < least_db ? std::move(trial) : run(settings);
     }
 
