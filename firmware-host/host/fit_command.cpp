@@ -39,8 +39,7 @@ struct FitResult {
 
 constexpr std::uint64_t last_seed = 6;  // the scenario has 1; the others tell how much of the fit is chance
 
-Result<FitResult> compute(const FitLogs& logs, const FitOptions& options, FitProgress& progress,
-                          const Messages& messages) {
+Result<FitResult> compute(const FitLogs& logs, const FitOptions& options, FitProgress& progress) {
     FitConditions conditions = conditions_of(logs.log, options);
     progress.expect(static_cast<double>(last_seed + 1) * logs.log.length.value());
     for (const StandingLog& log : logs.checks)
@@ -50,8 +49,6 @@ Result<FitResult> compute(const FitLogs& logs, const FitOptions& options, FitPro
     auto before = run_baseline(conditions, BaselineFractions::calibrated(), data, progress.watch());
     if (!before) return fail(before.error());
     result.before = std::move(*before);
-    progress.clear();
-    messages.warnings(result.before.warnings);
     result.fit = fit_fractions(result.before, logs.log.horizontal);
     auto after = run_baseline(conditions, result.fit.fractions, data, progress.watch());
     if (!after) return fail(after.error());
@@ -111,40 +108,20 @@ std::string scenario_text(const FitLogs& logs, const FitResult& result, const Fi
     return baseline_scenario(conditions_of(logs.log, options), result.after.fractions, remarks);
 }
 
-Result<void> write_files(const std::vector<std::filesystem::path>& files, const FitLogs& logs, const FitResult& result,
-                         const FitOptions& options) {
-    if (const auto made = make_folder(options.out); !made) return fail(made.error());
-    const std::string figure = scatter_plot_svg({"baseline, fitted", result.after.errors},
-                                                {on_a_terminal(logs.log.series.name), logs.log.errors});
-    if (const auto done = write_whole_file(files.front(), scenario_text(logs, result, options)); !done) return done;
-    return write_whole_file(files.back(), figure);
-}
-
-int fit_baseline_log(const FitOptions& options) {
-    const Messages messages(options.verbosity);
-    const auto files = fit_files(options);
-    if (!files) return messages.error(files.error());
-    catch_stop_signals();
-    const auto logs = read_fit_logs(options, messages);
-    if (!logs) return messages.error(logs.error());
-    FitProgress progress(messages);
-    const auto result = compute(*logs, options, progress, messages);
-    progress.clear();
-    if (stop_was_asked())
-        return messages.error({ErrorCode::outside, "fit was stopped by a signal; nothing is written"});
-    if (!result) return messages.error(result.error());
+Result<FitOutput> fit_baseline_model(const FitLogs& logs, const FitOptions& options, FitProgress& progress) {
+    auto result = compute(logs, options, progress);
+    if (!result) return fail(result.error());
+    FitOutput output;
+    output.warnings = result->before.warnings;
     if (result->fit.at_limit)
-        messages.warning(
+        output.warnings.push_back(
             fmt::format("the fractions end at {:g}, and the receiver's errors are larger than the model's "
                         "with them",
                         largest_fraction));
-    if (const auto written = write_files(*files, *logs, *result, options); !written)
-        return messages.error(written.error());
-    if (options.verbosity.quiet) return 0;
-    print_log(logs->log);
-    print_result(*logs, *result);
-    fmt::print("written     {}, {}\n", files->front().string(), files->back().string());
-    return 0;
+    output.scenario = scenario_text(logs, *result, options);
+    output.cloud = {"baseline, fitted", result->after.errors};
+    output.print = [&logs, found = std::move(*result)] { print_result(logs, found); };
+    return output;
 }
 
 // What only the modern model has is refused beside baseline, by CLI11's way of saying so.
@@ -202,7 +179,7 @@ Action add_fit_command(CLI::App& app) {
                       "Compare it with what follows in LOG, too, in parts of --count fixes");
     command->add_option("--out", options->out, "Folder for fit.toml and fit.svg; default: this one");
     add_verbosity_options(*command, options->verbosity);
-    return [options] { return options->model == "modern" ? fit_modern_log(*options) : fit_baseline_log(*options); };
+    return [options] { return fit_logs(*options, options->model == "modern" ? fit_modern_model : fit_baseline_model); };
 }
 
 }  // namespace skyloop::host

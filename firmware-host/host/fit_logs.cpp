@@ -103,6 +103,26 @@ void FitProgress::count() {
                     100 * std::min(1.0, static_cast<double>(done_) / expected_)));
 }
 
+FitConditions conditions_of(const StandingLog& log, const FitOptions& options) {
+    FitConditions conditions{log.place, *log.start, log.length};
+    conditions.navigation.assign(options.nav.begin(), options.nav.end());
+    return conditions;
+}
+
+std::string figures_text(const SampleStatistics& s) {
+    return fmt::format("mean {:.2f} m, standard deviation {:.2f} m", s.mean, s.std);
+}
+
+SampleStatistics figures_of(const std::vector<double>& values) {
+    return sample_statistics(values).value_or(SampleStatistics{});
+}
+
+ComparisonPercent percent_of(const SampleStatistics& model, const StandingLog& log) {
+    return comparison_percent(model, log.horizontal).value_or(ComparisonPercent{});
+}
+
+namespace {
+
 Result<std::vector<std::filesystem::path>> fit_files(const FitOptions& options) {
     if (options.check_rest && options.count == 0)
         return fail(ErrorCode::usage, "--check-rest: cuts the rest into parts of --count fixes; expected --count, too");
@@ -142,24 +162,6 @@ Result<FitLogs> read_fit_logs(const FitOptions& options, const Messages& message
     return FitLogs{std::move(*log), std::move(*checks)};
 }
 
-FitConditions conditions_of(const StandingLog& log, const FitOptions& options) {
-    FitConditions conditions{log.place, *log.start, log.length};
-    conditions.navigation.assign(options.nav.begin(), options.nav.end());
-    return conditions;
-}
-
-std::string figures_text(const SampleStatistics& s) {
-    return fmt::format("mean {:.2f} m, standard deviation {:.2f} m", s.mean, s.std);
-}
-
-SampleStatistics figures_of(const std::vector<double>& values) {
-    return sample_statistics(values).value_or(SampleStatistics{});
-}
-
-ComparisonPercent percent_of(const SampleStatistics& model, const StandingLog& log) {
-    return comparison_percent(model, log.horizontal).value_or(ComparisonPercent{});
-}
-
 void print_log(const StandingLog& log) {
     const Geodetic& at = log.place;
     fmt::print("log         {}: {} fixes in {:.0f} s from {}, at rest at {:.7f}, {:.7f}, {:.2f} m\n",
@@ -168,6 +170,39 @@ void print_log(const StandingLog& log) {
     static constexpr std::string_view about[] = {"its own truth", "the reference", "its own mean"};
     fmt::print("            horizontal error about {}: {}\n", about[static_cast<std::size_t>(log.errors.reference)],
                figures_text(log.horizontal));
+}
+
+Result<void> write_files(const std::vector<std::filesystem::path>& files, const FitLogs& logs, const FitOutput& output,
+                         const FitOptions& options) {
+    if (const auto made = make_folder(options.out); !made) return fail(made.error());
+    const std::string figure = scatter_plot_svg(output.cloud, {on_a_terminal(logs.log.series.name), logs.log.errors});
+    if (const auto done = write_whole_file(files.front(), output.scenario); !done) return done;
+    return write_whole_file(files.back(), figure);
+}
+
+}  // namespace
+
+int fit_logs(const FitOptions& options, const FitModel& fit) {
+    const Messages messages(options.verbosity);
+    const auto files = fit_files(options);
+    if (!files) return messages.error(files.error());
+    catch_stop_signals();
+    const auto logs = read_fit_logs(options, messages);
+    if (!logs) return messages.error(logs.error());
+    FitProgress progress(messages);
+    const auto output = fit(*logs, options, progress);
+    progress.clear();
+    if (stop_was_asked())
+        return messages.error({ErrorCode::outside, "fit was stopped by a signal; nothing is written"});
+    if (!output) return messages.error(output.error());
+    messages.warnings(output->warnings);
+    if (const auto written = write_files(*files, *logs, *output, options); !written)
+        return messages.error(written.error());
+    if (options.verbosity.quiet) return 0;
+    print_log(logs->log);
+    output->print();
+    fmt::print("written     {}, {}\n", files->front().string(), files->back().string());
+    return 0;
 }
 
 }  // namespace skyloop::host

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "campaigns/fit/fit_run.hpp"
 #include "messages.hpp"
 #include "study/analysis/standing_log.hpp"
+#include "study/plot/scatter_plot.hpp"
 
 namespace skyloop::host {
 
@@ -56,20 +58,24 @@ struct FitLogs {
     StandingLog log;
     std::vector<StandingLog> checks;
 };
-/// The scenario and the figure that will be written. Fails with `usage` where somebody else wrote such files, and for
-/// options that contradict each other.
-Result<std::vector<std::filesystem::path>> fit_files(const FitOptions& options);
-/// Reads LOG, --check and --check-rest. Fails with a line on what is no log at rest.
-Result<FitLogs> read_fit_logs(const FitOptions& options, const Messages& messages);
 
 FitConditions conditions_of(const StandingLog& log, const FitOptions& options);
 std::string figures_text(const SampleStatistics& s);
 SampleStatistics figures_of(const std::vector<double>& values);
 /// The article's percentage of what the model makes against the log.
 ComparisonPercent percent_of(const SampleStatistics& model, const StandingLog& log);
-void print_log(const StandingLog& log);
 
-/// `skyloop fit --model modern`, once the options are known to be right together.
-int fit_modern_log(const FitOptions& options);
+/// What a fit found.
+struct FitOutput {
+    std::vector<std::string> warnings;
+    std::string scenario;
+    ScatterCloud cloud;  ///< of the model, for the figure
+    std::function<void()> print;
+};
+using FitModel = std::function<Result<FitOutput>(const FitLogs&, const FitOptions&, FitProgress&)>;
+/// `skyloop fit`: reads the logs, fits, writes both files and prints. @return what the program ends with
+int fit_logs(const FitOptions& options, const FitModel& fit);
+/// A FitModel.
+Result<FitOutput> fit_modern_model(const FitLogs& logs, const FitOptions& options, FitProgress& progress);
 
 }  // namespace skyloop::host

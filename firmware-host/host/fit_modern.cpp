@@ -48,7 +48,7 @@ struct ModernFitResult {
     std::vector<Check> checks;
 };
 
-Result<ModernFitResult> compute(const FitLogs& logs, const FitOptions& options, FitProgress& progress) {
+Result<ModernFitResult> compute_modern(const FitLogs& logs, const FitOptions& options, FitProgress& progress) {
     const ModernFitRequest request = request_of(logs.log, options);
     progress.expect(static_cast<double>(most_runs(request)) * logs.log.length.value());
     for (const StandingLog& log : logs.checks)
@@ -134,47 +134,23 @@ void print_result(const FitLogs& logs, const ModernFitResult& result) {
     }
 }
 
-Result<void> write_files(const std::vector<std::filesystem::path>& files, const FitLogs& logs,
-                         const ModernFitResult& result, const FitOptions& options) {
-    if (const auto made = make_folder(options.out); !made) return fail(made.error());
+}  // namespace
+
+Result<FitOutput> fit_modern_model(const FitLogs& logs, const FitOptions& options, FitProgress& progress) {
+    auto result = compute_modern(logs, options, progress);
+    if (!result) return fail(result.error());
     const ModernFitRequest request = request_of(logs.log, options);
-    const ModernTrial& after = result.fit.after;
+    const ModernTrial& after = result->fit.after;
     const std::string remarks = fmt::format(
         "# Made by skyloop fit --model modern of {}, {} fixes of a receiver at rest.\n"
         "# Misfit of the figures {:.2f}, of the preset under an open sky {:.2f} (1: as two hours of one receiver).\n",
-        on_a_terminal(logs.log.series.name), logs.log.series.fixes(), after.misfit, result.fit.before.misfit);
-    if (const auto done = write_whole_file(
-            files.front(), modern_scenario(request.conditions, request.receiver, after.settings, remarks));
-        !done)
-        return done;
-    const std::string figure = scatter_plot_svg({"modern, fitted", after.runs.front().errors(result.target.placed)},
-                                                {on_a_terminal(logs.log.series.name), logs.log.errors});
-    return write_whole_file(files.back(), figure);
-}
-
-}  // namespace
-
-int fit_modern_log(const FitOptions& options) {
-    const Messages messages(options.verbosity);
-    const auto files = fit_files(options);
-    if (!files) return messages.error(files.error());
-    catch_stop_signals();
-    const auto logs = read_fit_logs(options, messages);
-    if (!logs) return messages.error(logs.error());
-    FitProgress progress(messages);
-    const auto result = compute(*logs, options, progress);
-    progress.clear();
-    if (stop_was_asked())
-        return messages.error({ErrorCode::outside, "fit was stopped by a signal; nothing is written"});
-    if (!result) return messages.error(result.error());
-    messages.warnings(result->fit.before.runs.front().notes.warnings);
-    if (const auto written = write_files(*files, *logs, *result, options); !written)
-        return messages.error(written.error());
-    if (options.verbosity.quiet) return 0;
-    print_log(logs->log);
-    print_result(*logs, *result);
-    fmt::print("written     {}, {}\n", files->front().string(), files->back().string());
-    return 0;
+        on_a_terminal(logs.log.series.name), logs.log.series.fixes(), after.misfit, result->fit.before.misfit);
+    FitOutput output;
+    output.warnings = result->fit.before.runs.front().notes.warnings;
+    output.scenario = modern_scenario(request.conditions, request.receiver, after.settings, remarks);
+    output.cloud = {"modern, fitted", after.runs.front().errors(result->target.placed)};
+    output.print = [&logs, found = std::move(*result)] { print_result(logs, found); };
+    return output;
 }
 
 }  // namespace skyloop::host

@@ -23,8 +23,8 @@ std::vector<PortId> uarts_of(const BoardProfile& board) {
 // The item of a message that CFG-MSG names; nothing for one that is not sent.
 std::optional<std::uint32_t> casic_rate_item(CasicMessageId message, PortId port) {
     if (message.message_class == casic_class_nmea) {
-        constexpr std::array<std::string_view, 9> sentences{"GGA", "GLL", "GSA", "GSV", "RMC", "VTG", "", "GST", "ZDA"};
-        return message.id < sentences.size() ? SentenceSettings::rate(sentences[message.id], port) : std::nullopt;
+        constexpr std::array<std::string_view, 9> by_number{"GGA", "GLL", "GSA", "GSV", "RMC", "VTG", "", "GST", "ZDA"};
+        return message.id < by_number.size() ? SentenceSettings::rate(by_number[message.id], port) : std::nullopt;
     }
     const auto* const found = std::ranges::find(casic_periodic, message);
     if (found == casic_periodic.end()) return std::nullopt;

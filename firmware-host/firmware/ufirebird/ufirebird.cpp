@@ -92,7 +92,7 @@ void UfirebirdMaker::systems(Command& command) {
 
 // "CFGMSG,class,id,rate[,port]": class 0 sentences, 6 notices.
 void UfirebirdMaker::rate(Command& command) {
-    constexpr std::array<std::string_view, 9> sentences{"GGA", "GLL", "GSA", "GSV", "RMC", "VTG", "ZDA", "GST", "GBS"};
+    constexpr std::array<std::string_view, 9> by_number{"GGA", "GLL", "GSA", "GSV", "RMC", "VTG", "ZDA", "GST", "GBS"};
     constexpr int of_sentences = 0, of_notices = 6, most = 20;
     std::array<int, 3> numbers{};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -107,9 +107,9 @@ void UfirebirdMaker::rate(Command& command) {
         settings().set(in_ram, notices_key, rate == 0 ? before & ~bit : before | bit);
         return command.ok();
     }
-    const bool known = kind == of_sentences && id < static_cast<int>(sentences.size());
+    const bool known = kind == of_sentences && id < static_cast<int>(by_number.size());
     const auto item =
-        known ? SentenceSettings::rate(sentences[static_cast<std::size_t>(id)], command.from) : std::nullopt;
+        known ? SentenceSettings::rate(by_number[static_cast<std::size_t>(id)], command.from) : std::nullopt;
     if (!item) return command.wrong_parameter();
     settings().set(in_ram, *item, static_cast<std::uint64_t>(rate));
     command.ok();
