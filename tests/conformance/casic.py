@@ -9,6 +9,7 @@ import nmea
 import receiver
 from dialogue import Client
 from meshtastic import casic_frame
+from stream import StreamParser
 
 NAMES = {0x0101: "NAV-DOP", 0x0102: "NAV-SOL", 0x0103: "NAV-PV", 0x0110: "NAV-TIMEUTC", 0x0500: "ACK-NAK",
          0x0501: "ACK-ACK", 0x0600: "CFG-PRT", 0x0601: "CFG-MSG", 0x0604: "CFG-RATE", 0x0605: "CFG-CFG", 0x0607: "CFG-NAVX"}
@@ -34,24 +35,8 @@ class CasicLine:
         return self.text[:80]
 
 
-class CasicParser:
+class CasicParser(StreamParser):
     """Frames and sentences."""
-
-    def __init__(self):
-        self.buffer = b""
-
-    def clear(self):
-        self.buffer = b""
-
-    def feed(self, data, at=0.0):
-        self.buffer += data
-        items = []
-        while self.buffer:
-            used = self.take(at, items)
-            if used == 0:
-                break
-            self.buffer = self.buffer[used:]
-        return items
 
     def take(self, at, items):
         data = self.buffer

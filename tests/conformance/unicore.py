@@ -9,6 +9,7 @@ import time
 import nmea
 import receiver
 from dialogue import Client
+from stream import StreamParser
 
 HEALTHY = 6.0
 PAIR = ('[[receiver]]\nname = "um982"\nbase = "slave"\n'
@@ -71,24 +72,8 @@ class Frame:
         return f"{self.name}, {len(self.payload)} bytes"
 
 
-class Parser:
+class Parser(StreamParser):
     """Lines, binary logs and frames of RTCM 3 (as Frame with the message's number) from a stream."""
-
-    def __init__(self):
-        self.buffer = b""
-
-    def clear(self):
-        self.buffer = b""
-
-    def feed(self, data, at=0.0):
-        self.buffer += data
-        items = []
-        while self.buffer:
-            used = self.take(at, items)
-            if used == 0:
-                break
-            self.buffer = self.buffer[used:]
-        return items
 
     def take(self, at, items):
         data = self.buffer
