@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "../support/split_stream.hpp"
 #include "firmware/core/factory_settings.hpp"
 #include "firmware/makers.hpp"
 #include "receiver/protocol/casic_messages.hpp"
@@ -23,19 +24,6 @@ bool is_written_as_read(ByteSpan payload) {
     const auto message = decode_payload<Message>(payload);
     if (message) require(encode_payload(*message) == Bytes(payload.begin(), payload.end()));
     return false;
-}
-
-std::vector<StreamPiece> casic_pieces(ByteSpan bytes, std::size_t portion) {
-    StreamSplitter splitter({.casic = true});
-    std::vector<StreamPiece> pieces;
-    const auto add = [&](std::vector<StreamPiece> more) {
-        for (StreamPiece& piece : more)
-            pieces.push_back(std::move(piece));
-    };
-    for (std::size_t at = 0; at < bytes.size(); at += portion)
-        add(splitter.feed(bytes.subspan(at, std::min(portion, bytes.size() - at))));
-    add(splitter.finish());
-    return pieces;
 }
 
 BoardProfile casic_board() {
@@ -63,8 +51,8 @@ void check_casic_outcome(const Maker& maker, const BoardProfile& board, const Co
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const ByteSpan bytes(data, size);
     KnownCasicMessages::any([&]<class Message>() { return is_written_as_read<Message>(bytes); });
-    const std::vector<StreamPiece> pieces = casic_pieces(bytes, std::max<std::size_t>(size, 1));
-    require(pieces == casic_pieces(bytes, 3));
+    const std::vector<StreamPiece> pieces = test::split_stream({.casic = true}, bytes, std::max<std::size_t>(size, 1));
+    require(pieces == test::split_stream({.casic = true}, bytes, 3));
     for (const StreamPiece& piece : pieces)
         static_cast<void>(text_line(decode_piece(piece)));
     if (size < 2) return 0;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/split_stream.hpp"
 #include "receiver/protocol/decoded_message.hpp"
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/unicore_frame.hpp"
@@ -36,19 +37,6 @@ bool reads_its_own_bytes(ByteSpan payload) {
     return false;
 }
 
-std::vector<StreamPiece> pieces_of(ByteSpan bytes, std::size_t portion) {
-    StreamSplitter splitter({.unicore = true});
-    std::vector<StreamPiece> pieces;
-    const auto add = [&](std::vector<StreamPiece> more) {
-        for (StreamPiece& piece : more)
-            pieces.push_back(std::move(piece));
-    };
-    for (std::size_t at = 0; at < bytes.size(); at += portion)
-        add(splitter.feed(bytes.subspan(at, std::min(portion, bytes.size() - at))));
-    add(splitter.finish());
-    return pieces;
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -63,8 +51,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     KnownUnicoreLogs::any([&]<class Message>() { return reads_its_own_text<Message>(fields); });
     KnownUnicoreLogs::any([&]<class Message>() { return reads_its_own_bytes<Message>(bytes); });
-    const std::vector<StreamPiece> pieces = pieces_of(bytes, std::max<std::size_t>(size, 1));
-    require(pieces == pieces_of(bytes, 3));
+    const std::vector<StreamPiece> pieces =
+        test::split_stream({.unicore = true}, bytes, std::max<std::size_t>(size, 1));
+    require(pieces == test::split_stream({.unicore = true}, bytes, 3));
     for (const StreamPiece& piece : pieces)
         static_cast<void>(text_line(decode_piece(piece)));
     return 0;

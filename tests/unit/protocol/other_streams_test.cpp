@@ -11,6 +11,7 @@
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/ubx_nav.hpp"
 #include "support/oracle_table.hpp"
+#include "support/split_stream.hpp"
 
 namespace skyloop {
 namespace {
@@ -27,12 +28,7 @@ struct SplitStream {
 SplitStream split_all(ByteSpan stream, std::size_t step, StreamProtocols protocols = every_protocol) {
     StreamSplitter splitter(protocols);
     SplitStream result;
-    const auto keep = [&](std::vector<StreamPiece> more) {
-        std::move(more.begin(), more.end(), back_inserter(result.pieces));
-    };
-    for (std::size_t at = 0; at < stream.size(); at += step)
-        keep(splitter.feed(stream.subspan(at, std::min(step, stream.size() - at))));
-    keep(splitter.finish());
+    result.pieces = test::split_stream(splitter, stream, step);
     result.counts = splitter.counts();
     return result;
 }

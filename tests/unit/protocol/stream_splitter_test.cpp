@@ -17,24 +17,12 @@
 #include "receiver/protocol/ubx_satellites.hpp"
 #include "receiver/protocol/ubx_time.hpp"
 #include "support/oracle_table.hpp"
+#include "support/split_stream.hpp"
 
 namespace skyloop {
 namespace {
 
 void add(Bytes& stream, const Bytes& more) { stream.insert(stream.end(), more.begin(), more.end()); }
-
-std::vector<StreamPiece> split(ByteSpan stream, std::size_t step) {
-    StreamSplitter splitter;
-    std::vector<StreamPiece> pieces;
-    const auto keep = [&](std::vector<StreamPiece> more) {
-        std::move(more.begin(), more.end(), back_inserter(pieces));
-    };
-    for (std::size_t at = 0; at < stream.size(); at += step) {
-        keep(splitter.feed(stream.subspan(at, std::min(step, stream.size() - at))));
-    }
-    keep(splitter.finish());
-    return pieces;
-}
 
 Bytes rtcm_frame() {
     Bytes frame{0xD3, 0, 4, 0x3E, 0xD0, 0, 1};
@@ -68,7 +56,7 @@ TEST(StreamSplitter, KnowsCrc24q) {
 }
 
 TEST(StreamSplitter, FindsEveryFrameBetweenDamage) {
-    const auto pieces = split(mixed_stream(), 1000000);
+    const auto pieces = test::split_stream(StreamProtocols(), mixed_stream(), 1000000);
     std::map<StreamKind, int> found;
     Bytes joined;
     for (const StreamPiece& piece : pieces) {
@@ -89,9 +77,9 @@ TEST(StreamSplitter, DoesNotCareHowTheStreamIsCut) {
             part[random() % part.size()] = static_cast<std::uint8_t>(random());
         add(stream, part);
     }
-    const auto whole = split(stream, stream.size());
+    const auto whole = test::split_stream(StreamProtocols(), stream, stream.size());
     for (const std::size_t step : {1u, 2u, 3u, 7u, 64u, 1000u})
-        EXPECT_EQ(split(stream, step), whole) << step;
+        EXPECT_EQ(test::split_stream(StreamProtocols(), stream, step), whole) << step;
 }
 
 // RECEIVER.md 1.3: what is whole is not searched once more.
@@ -99,7 +87,9 @@ TEST(StreamSplitter, AFrameThatHoldsAnotherIsOneFrame) {
     const Bytes sentence = to_bytes("$PUBX,04*37\r\n");
     const Bytes outer = encode_frame(UbxMessageId{0x06, 0x34}, sentence);
     for (const std::size_t step : {1u, 5u, 100u})
-        EXPECT_EQ(split(outer, step), (std::vector<StreamPiece>{{StreamKind::ubx, outer}})) << step;
+        EXPECT_EQ(test::split_stream(StreamProtocols(), outer, step),
+                  (std::vector<StreamPiece>{{StreamKind::ubx, outer}}))
+            << step;
     StreamSplitter splitter;
     EXPECT_TRUE(splitter.feed(ByteSpan(outer).first(6 + sentence.size() - 1)).empty());
     EXPECT_FALSE(splitter.holds_whole());
@@ -138,7 +128,7 @@ bool returns_as_it_was(const UbxFrameView& frame, bool& known) {
 
 TEST(StreamSplitter, TakesLinesThatSomeProgramEndedOnceMore) {
     const std::string line = "$GPTXT,01,01,02,a*2C\r\r\n";
-    const auto pieces = split(to_bytes(line + "$GPTXT,01,01,02,a*2C\rx\n"), 1);
+    const auto pieces = test::split_stream(StreamProtocols(), to_bytes(line + "$GPTXT,01,01,02,a*2C\rx\n"), 1);
     ASSERT_EQ(pieces.size(), 2U);
     EXPECT_EQ(pieces[0].kind, StreamKind::nmea);
     EXPECT_EQ(pieces[0].bytes, to_bytes(line));
@@ -152,7 +142,7 @@ TEST(StreamSplitter, FramesOfRealReceiversReturnByteForByte) {
         if (!entry.is_regular_file()) continue;
         std::ifstream file(entry.path(), std::ios::binary);
         const std::string text{std::istreambuf_iterator<char>(file), {}};
-        for (const StreamPiece& piece : split(to_bytes(text), 4096)) {
+        for (const StreamPiece& piece : test::split_stream(StreamProtocols(), to_bytes(text), 4096)) {
             if (piece.kind != StreamKind::ubx) continue;
             const auto frame = parse_frame(piece.bytes);
             ASSERT_TRUE(frame);

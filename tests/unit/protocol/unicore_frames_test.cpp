@@ -8,6 +8,7 @@
 #include "receiver/protocol/stream_splitter.hpp"
 #include "receiver/protocol/unicore_frame.hpp"
 #include "receiver/protocol/unicore_logs.hpp"
+#include "support/split_stream.hpp"
 
 namespace skyloop::inline receiver {
 namespace {
@@ -131,17 +132,6 @@ TEST(UnicoreFrame, BodiesOfOtherFormsAreRefused) {
     EXPECT_FALSE(read_unicore_body<UnicorePvtsln>(prns));
 }
 
-std::vector<StreamPiece> unicore_pieces(const Bytes& stream, std::size_t portion) {
-    StreamSplitter splitter({.unicore = true});
-    std::vector<StreamPiece> pieces;
-    for (std::size_t at = 0; at < stream.size(); at += portion)
-        for (StreamPiece& piece : splitter.feed(ByteSpan(stream).subspan(at, std::min(portion, stream.size() - at))))
-            pieces.push_back(std::move(piece));
-    for (StreamPiece& piece : splitter.finish())
-        pieces.push_back(std::move(piece));
-    return pieces;
-}
-
 TEST(UnicoreFrame, AreFoundAmongSentencesHoweverTheyArrive) {
     Bytes stream = to_bytes("$command,BESTNAVA 1,response: OK*57\r\n$GNGGA,111338.00,,,,,0,00,9999.0,,,,,,*41\r\n");
     const auto add = [&](const Bytes& bytes) { stream.insert(stream.end(), bytes.begin(), bytes.end()); };
@@ -151,14 +141,14 @@ TEST(UnicoreFrame, AreFoundAmongSentencesHoweverTheyArrive) {
     spoilt[60] ^= 1;
     add(to_bytes(spoilt));
     add(to_bytes(agrica_text + "\r\n"));
-    const auto whole = unicore_pieces(stream, stream.size());
+    const auto whole = test::split_stream({.unicore = true}, stream, stream.size());
     std::vector<StreamKind> kinds;
     for (const StreamPiece& piece : whole)
         if (piece.kind != StreamKind::noise) kinds.push_back(piece.kind);
     using enum StreamKind;
     EXPECT_EQ(kinds, (std::vector{unicore, nmea, unicore, unicore, unicore}));
     for (const std::size_t portion : {std::size_t{1}, std::size_t{7}, std::size_t{100}})
-        EXPECT_EQ(unicore_pieces(stream, portion), whole) << portion;
+        EXPECT_EQ(test::split_stream({.unicore = true}, stream, portion), whole) << portion;
 }
 
 TEST(UnicoreFrame, AreListedAlikeAsTextAndAsBytes) {
