@@ -188,7 +188,8 @@ class PageRun:
     def look_at_toml(self, block):
         name = (block.all("file") or [f"block{block.line}.toml"])[0]
         (self.folder / name).write_text(self.here(block.text), encoding="utf-8")
-        self.streams(block, f"skyloop check {name}", expected_code=2 if block.has("refused") else 0)
+        what = "boards ./" if any(line.startswith("extends = ") for line in block.text.splitlines()) else "check "
+        self.streams(block, f"skyloop {what}{name}", expected_code=2 if block.has("refused") else 0)
 
     def look_at_python(self, block):
         ast.parse(block.text, str(block))
