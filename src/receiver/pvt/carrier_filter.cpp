@@ -104,10 +104,6 @@ Eigen::RowVectorXd CarrierFilter::State::row_of(const SingleDifference& d, bool 
     return row;
 }
 
-bool CarrierFilter::State::settled(const SingleDifference& d) const {
-    return difference(*time_, tracked_.at(ambiguity_of(d)).since) >= p_.settled_after;
-}
-
 // By how much the variance of a code is larger. A loop averages its noise away while it runs; what else a code is off
 // by lasts. So what codes say grows by and by.
 double CarrierFilter::State::code_weakness(const SingleDifference& d, bool at_first) const {

@@ -57,7 +57,6 @@ private:
     void predict(const Spacing& spacing);
     void begin_ambiguity(const SingleDifference& d, GpsTime time, Seconds tracked);
     [[nodiscard]] Eigen::RowVectorXd row_of(const SingleDifference& d, bool phase) const;
-    [[nodiscard]] bool settled(const SingleDifference& d) const;
     [[nodiscard]] double code_weakness(const SingleDifference& d, bool at_first) const;
     enum class Says { phase, code, news_of_code };  // since the epoch before
     [[nodiscard]] GroupEquations equations(const Group& group, Says says) const;
