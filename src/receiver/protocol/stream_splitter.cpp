@@ -159,11 +159,10 @@ Candidate dollar_at(ByteSpan bytes, const StreamProtocols& protocols) {
         const Candidate found = msp_at(bytes);
         if (found.verdict != Candidate::Verdict::nothing || !protocols.nmea) return found;
     }
-    const Candidate sentence = protocols.nmea ? sentence_at(bytes) : no_piece;
-    if (!protocols.unicore || sentence.verdict == Candidate::Verdict::whole ||
-        sentence.verdict == Candidate::Verdict::unfinished)
-        return sentence;
+    if (!protocols.nmea) return protocols.unicore ? unicore_line_at(bytes) : no_piece;
+    const Candidate sentence = sentence_at(bytes);
     // An answer is a sentence whose checksum covers its dollar, too.
+    if (!protocols.unicore || sentence.verdict != Candidate::Verdict::bad) return sentence;
     const Candidate answer = unicore_line_at(bytes);
     return answer.verdict == Candidate::Verdict::whole ? answer : sentence;
 }

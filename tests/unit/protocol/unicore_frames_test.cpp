@@ -132,6 +132,17 @@ TEST(UnicoreFrame, BodiesOfOtherFormsAreRefused) {
     EXPECT_FALSE(read_unicore_body<UnicorePvtsln>(prns));
 }
 
+// A line that breaks off is no part of the one after it, even where a checksum holds for both together.
+TEST(UnicoreFrame, AnAnswerThatBreaksOffIsNoiseHoweverItArrives) {
+    const std::string both = "$devicename,COM3*65\r0,0,0,18,969;MODE ROVER SURVEY,";
+    const Bytes stream = to_bytes(unicore_answer_line(both));
+    const auto whole = test::split_stream({.unicore = true}, stream, stream.size());
+    for (const std::size_t portion : {std::size_t{1}, std::size_t{3}, std::size_t{7}})
+        EXPECT_EQ(test::split_stream({.unicore = true}, stream, portion), whole) << portion;
+    ASSERT_EQ(whole.size(), 1u);
+    EXPECT_EQ(whole[0].kind, StreamKind::noise);
+}
+
 TEST(UnicoreFrame, AreFoundAmongSentencesHoweverTheyArrive) {
     Bytes stream = to_bytes("$command,BESTNAVA 1,response: OK*57\r\n$GNGGA,111338.00,,,,,0,00,9999.0,,,,,,*41\r\n");
     const auto add = [&](const Bytes& bytes) { stream.insert(stream.end(), bytes.begin(), bytes.end()); };
