@@ -135,13 +135,8 @@ void set_pair_sbas(PairCommand& c) {
 
 // What waits for the next start is saved too.
 void save_pair(PairCommand& c) {
-    for (const auto& [item, value] : c.store.values(ConfigLayer::ram)) {
-        const std::uint64_t lasting = c.store.stored(ConfigLayer::battery, item).value_or(value);
-        if (c.store.stored(ConfigLayer::factory, item) != lasting)
-            c.store.set(in_flash, item, lasting);
-        else
-            c.store.erase(in_flash, item);
-    }
+    for (const auto& [item, value] : c.store.values(ConfigLayer::ram))
+        c.store.keep(item, c.store.stored(ConfigLayer::battery, item).value_or(value));
     c.acknowledge(PairResult::done);
 }
 

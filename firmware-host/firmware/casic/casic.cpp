@@ -13,13 +13,6 @@ namespace {
 constexpr std::uint16_t eight_bits_no_parity = 0x08C0;
 constexpr std::uint8_t casic_this_port = 0xFF;
 
-// Numbers of ports are those of the board's UARTs in their order.
-std::vector<PortId> uarts_of(const BoardProfile& board) {
-    std::vector<PortId> uarts;
-    std::ranges::copy_if(board.ports, std::back_inserter(uarts), is_uart);
-    return uarts;
-}
-
 // The item of a message that CFG-MSG names; nothing for one that is not sent.
 std::optional<std::uint32_t> casic_rate_item(CasicMessageId message, PortId port) {
     if (message.message_class == casic_class_nmea) {

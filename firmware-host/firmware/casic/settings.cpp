@@ -15,38 +15,30 @@ constexpr std::array<std::uint64_t, 8> models_of_motions{0, 2, 3, 4, 5, 6, 7, 8}
 constexpr std::array<Constellation, 3> systems_of_bits{Constellation::gps, Constellation::beidou,
                                                        Constellation::glonass};
 
-void add_casic_setting(CasicSettings& settings, std::uint32_t key, std::string name, std::uint64_t factory) {
-    settings.names.push_back(std::move(name));
-    settings.list.push_back({key, {}, factory});
-}
-
 }  // namespace
 
-CasicSettings casic_settings(const BoardProfile& board) {
+OwnSettings casic_settings(const BoardProfile& board) {
     constexpr std::uint64_t automatic = 3, fewest = 3, most = 32, weakest = 4;
-    CasicSettings settings;
+    OwnSettings settings;
     const std::uint64_t version = board.nmea_version >= NmeaVersion::v4_10  ? casic_nmea_4_10
                                   : board.nmea_version >= NmeaVersion::v4_0 ? casic_nmea_4_0
                                                                             : casic_nmea_2_2;
-    add_casic_setting(settings, CasicKeys::sentence_version, "sentence_version", version);
-    add_casic_setting(settings, CasicKeys::fix_mode, "fix_mode", automatic);
-    add_casic_setting(settings, CasicKeys::least_satellites, "least_satellites", fewest);
-    add_casic_setting(settings, CasicKeys::most_satellites, "most_satellites", most);
-    add_casic_setting(settings, CasicKeys::least_cn0, "least_cn0", weakest);
-    add_casic_setting(settings, CasicKeys::least_elevation, "least_elevation",
-                      static_cast<std::uint64_t>(std::lround(board.elevation_mask.deg())));
+    settings.add(CasicKeys::sentence_version, "sentence_version", version);
+    settings.add(CasicKeys::fix_mode, "fix_mode", automatic);
+    settings.add(CasicKeys::least_satellites, "least_satellites", fewest);
+    settings.add(CasicKeys::most_satellites, "most_satellites", most);
+    settings.add(CasicKeys::least_cn0, "least_cn0", weakest);
+    settings.add(CasicKeys::least_elevation, "least_elevation",
+                 static_cast<std::uint64_t>(std::lround(board.elevation_mask.deg())));
     for (const PortId port : board.ports) {
         const std::string_view name = port_names[static_cast<std::size_t>(port)];
-        add_casic_setting(settings, CasicKeys::protocols(port), fmt::format("protocols_{}", name), casic_all_protocols);
-        if (is_uart(port))
-            add_casic_setting(settings, SentenceSettings::baud(port), fmt::format("baud_{}", name), board.baud);
-        add_casic_setting(settings, CasicKeys::antenna_text(port), fmt::format("ANT_{}", name), 1);
+        settings.add(CasicKeys::protocols(port), fmt::format("protocols_{}", name), casic_all_protocols);
+        if (is_uart(port)) settings.add(SentenceSettings::baud(port), fmt::format("baud_{}", name), board.baud);
+        settings.add(CasicKeys::antenna_text(port), fmt::format("ANT_{}", name), 1);
         for (std::size_t i = 0; i < casic_periodic.size(); ++i)
-            add_casic_setting(settings, CasicKeys::rate(i, port),
-                              fmt::format("{}_{}", casic_message_name(casic_periodic[i]), name), 0);
+            settings.add(CasicKeys::rate(i, port), fmt::format("{}_{}", casic_message_name(casic_periodic[i]), name),
+                         0);
     }
-    for (std::size_t i = 0; i < settings.list.size(); ++i)
-        settings.list[i].name = settings.names[i];
     return settings;
 }
 
@@ -88,18 +80,14 @@ bool set_casic_speed(SentenceSettings& store, const BoardProfile& board, PortId 
 bool set_casic_interval(SentenceSettings& store, const BoardProfile& board, std::uint64_t period_ms) {
     constexpr std::array<std::uint64_t, 5> intervals{100, 200, 250, 500, 1000};
     const bool known = std::ranges::find(intervals, period_ms) != intervals.end();
-    if (!known || static_cast<double>(period_ms) * board.max_rate_hz < 999.5) return false;
+    if (!known || !can_fix_each(board, period_ms)) return false;
     store.set(in_ram, SentenceSettings::fix_interval_ms, period_ms);
     return true;
 }
 
 void save_casic(SentenceSettings& store) {
-    for (const auto& [item, value] : store.values(ConfigLayer::ram)) {
-        if (store.stored(ConfigLayer::factory, item) != value)
-            store.set(in_flash, item, value);
-        else
-            store.erase(in_flash, item);
-    }
+    for (const auto& [item, value] : store.values(ConfigLayer::ram))
+        store.keep(item, value);
 }
 
 }  // namespace skyloop::firmware

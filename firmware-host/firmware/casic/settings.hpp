@@ -40,12 +40,7 @@ inline constexpr std::uint64_t casic_nmea_4_10 = 2, casic_nmea_4_0 = 5, casic_nm
 inline constexpr std::uint64_t casic_binary_in = 0x01, casic_text_in = 0x02, casic_binary_out = 0x10,
                                casic_text_out = 0x20, casic_all_protocols = 0x33;
 
-/// The list, and the names that it points to.
-struct CasicSettings {
-    std::vector<std::string> names;
-    std::vector<OwnSetting> list;
-};
-CasicSettings casic_settings(const BoardProfile& board);
+OwnSettings casic_settings(const BoardProfile& board);
 
 /// Systems by the bits of PCAS04 and CFG-NAVX: 0 GPS, 1 BeiDou, 2 GLONASS. Changes nothing, and says false, where the
 /// board could not go on with them.

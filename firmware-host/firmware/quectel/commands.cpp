@@ -83,8 +83,7 @@ QuectelMaker::Verdict QuectelMaker::version(const Command& command) {
 
 // "R[,1,n]" or "W,[1,n,]baud[,8,0,1,0]". What changes the port's own speed is answered as the board's quirk says.
 QuectelMaker::Verdict QuectelMaker::port_speed(const Command& command) {
-    std::vector<PortId> uarts;
-    std::ranges::copy_if(board().ports, std::back_inserter(uarts), is_uart);
+    const std::vector<PortId> uarts = uarts_of(board());
     const bool named = command.field(1) == "1" && command.sentence.fields.size() > 2;
     const auto number = named ? number_in<std::size_t>(command.field(2)) : std::nullopt;
     if (named && (!number || *number == 0 || *number > uarts.size())) return Verdict::wrong_parameter;
@@ -109,7 +108,7 @@ QuectelMaker::Verdict QuectelMaker::fix_rate(const Command& command) {
     constexpr std::array<int, 5> intervals{50, 100, 200, 500, 1000};
     const auto period = number_in<int>(command.field(1));
     if (!command.writes() || !period || std::ranges::find(intervals, *period) == intervals.end() ||
-        *period * board().max_rate_hz < 999.5)
+        !can_fix_each(board(), static_cast<std::uint64_t>(*period)))
         return Verdict::wrong_parameter;
     set_coming(SentenceSettings::fix_interval_ms, static_cast<std::uint64_t>(*period));
     return Verdict::ok;
@@ -120,8 +119,7 @@ QuectelMaker::Verdict QuectelMaker::message_rate(const Command& command) {
     std::size_t name_at = 1;
     PortId port = command.asked.from;
     if (command.field(1) == "1") {
-        std::vector<PortId> uarts;
-        std::ranges::copy_if(board().ports, std::back_inserter(uarts), is_uart);
+        const std::vector<PortId> uarts = uarts_of(board());
         const auto number = number_in<std::size_t>(command.field(2));
         if (!number || *number == 0 || *number > uarts.size()) return Verdict::wrong_parameter;
         port = uarts[*number - 1];
@@ -191,8 +189,7 @@ QuectelMaker::Verdict QuectelMaker::mode(const Command& command) {
 // "W,mode,positions,accuracy,x,y,z": 0 none, 1 a survey, 2 stands at x y z.
 QuectelMaker::Verdict QuectelMaker::survey(const Command& command) {
     const auto axis_m = [&](std::size_t axis) {
-        return static_cast<double>(coming(QuectelKeys::metres(axis))) - static_cast<double>(quectel_axis_offset_m) +
-               static_cast<double>(coming(QuectelKeys::rest(axis))) / static_cast<double>(quectel_rests_per_metre);
+        return quectel_axis_m(coming(QuectelKeys::metres(axis)), coming(QuectelKeys::rest(axis)));
     };
     constexpr double thousandths = 1000, largest = 4e6;
     if (command.reads()) {
@@ -254,13 +251,8 @@ QuectelMaker::Verdict QuectelMaker::topic(const Command& command) {
 QuectelMaker::Verdict QuectelMaker::save(const Command& command) {
     command.outcome.work += board().timing.flash_write;
     const ConfigValues in_force = settings().values(ConfigLayer::ram);
-    for (const auto& [item, value] : in_force) {
-        const std::uint64_t lasting = coming(item);
-        if (settings().stored(ConfigLayer::factory, item) != lasting)
-            settings().set(in_flash, item, lasting);
-        else
-            settings().erase(in_flash, item);
-    }
+    for (const auto& [item, value] : in_force)
+        settings().keep(item, coming(item));
     return Verdict::ok;
 }
 

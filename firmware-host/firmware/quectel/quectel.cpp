@@ -20,35 +20,30 @@ constexpr std::array<std::uint8_t, 5> msm4_ids{74, 84, 94, 114, 124}, msm7_ids{7
 
 }  // namespace
 
-QuectelSettings quectel_settings(const BoardProfile& board) {
-    QuectelSettings settings;
-    const auto add = [&](std::uint32_t key, std::string name, std::uint64_t factory) {
-        settings.names.push_back(std::move(name));
-        settings.list.push_back({key, {}, factory});
-    };
+OwnSettings quectel_settings(const BoardProfile& board) {
+    OwnSettings settings;
     const bool base = is_base_module(board);
-    add(QuectelKeys::mode, "receiver_mode", base ? quectel_base : quectel_rover);
-    add(QuectelKeys::survey, "survey_mode", 0);
-    add(QuectelKeys::survey_positions, "survey_positions", 0);
-    add(QuectelKeys::survey_accuracy_mm, "survey_accuracy_mm", 0);
+    settings.add(QuectelKeys::mode, "receiver_mode", base ? quectel_base : quectel_rover);
+    settings.add(QuectelKeys::survey, "survey_mode", 0);
+    settings.add(QuectelKeys::survey_positions, "survey_positions", 0);
+    settings.add(QuectelKeys::survey_accuracy_mm, "survey_accuracy_mm", 0);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        add(QuectelKeys::metres(axis), fmt::format("survey_{}_m", "xyz"[axis]),
-            static_cast<std::uint64_t>(quectel_axis_offset_m));
-        add(QuectelKeys::rest(axis), fmt::format("survey_{}_rest", "xyz"[axis]), 0);
+        settings.add(QuectelKeys::metres(axis), fmt::format("survey_{}_m", "xyz"[axis]),
+                     static_cast<std::uint64_t>(quectel_axis_offset_m));
+        settings.add(QuectelKeys::rest(axis), fmt::format("survey_{}_rest", "xyz"[axis]), 0);
     }
-    add(QuectelKeys::msm, "msm", base ? 7 : 4);
-    add(QuectelKeys::station, "station_message", 1);
-    add(QuectelKeys::elevation, "elevation_deg", static_cast<std::uint64_t>(std::lround(board.elevation_mask.deg())));
+    settings.add(QuectelKeys::msm, "msm", base ? 7 : 4);
+    settings.add(QuectelKeys::station, "station_message", 1);
+    settings.add(QuectelKeys::elevation, "elevation_deg",
+                 static_cast<std::uint64_t>(std::lround(board.elevation_mask.deg())));
     for (const PortId port : board.ports)
         if (is_uart(port))
-            add(SentenceSettings::baud(port), fmt::format("baud_{}", port_names[static_cast<std::size_t>(port)]),
-                board.baud);
+            settings.add(SentenceSettings::baud(port),
+                         fmt::format("baud_{}", port_names[static_cast<std::size_t>(port)]), board.baud);
     for (const PortId port : board.ports)
         for (std::size_t i = 0; i < quectel_messages.size(); ++i)
-            add(QuectelKeys::rate(i, port),
-                fmt::format("{}_{}", quectel_messages[i].name, port_names[static_cast<std::size_t>(port)]), 0);
-    for (std::size_t i = 0; i < settings.list.size(); ++i)
-        settings.list[i].name = settings.names[i];
+            settings.add(QuectelKeys::rate(i, port),
+                         fmt::format("{}_{}", quectel_messages[i].name, port_names[static_cast<std::size_t>(port)]), 0);
     return settings;
 }
 
@@ -107,12 +102,10 @@ void QuectelMaker::adjust(ReceiverConfig& config) const {
                                      Metres(mm > 0 ? mm / thousandths : any_accuracy_m)};
     }
     if (store.value(QuectelKeys::survey) != stands) return;
-    std::array<double, 3> place{};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        place[axis] =
-            static_cast<double>(store.value(QuectelKeys::metres(axis))) - static_cast<double>(quectel_axis_offset_m) +
-            static_cast<double>(store.value(QuectelKeys::rest(axis))) / static_cast<double>(quectel_rests_per_metre);
-    config.place = BasePlace{Position<Ecef>(place[0], place[1], place[2]), Metres(0)};
+    const auto axis_m = [&](std::size_t axis) {
+        return quectel_axis_m(store.value(QuectelKeys::metres(axis)), store.value(QuectelKeys::rest(axis)));
+    };
+    config.place = BasePlace{Position<Ecef>(axis_m(0), axis_m(1), axis_m(2)), Metres(0)};
 }
 
 // A rover sends sentences, as a module that is nothing but a base does where it is asked to; a base its place, its name

@@ -29,6 +29,10 @@ inline constexpr std::array<QuectelMessage, 7> quectel_messages{{{"PQTMEPE", 2},
 inline constexpr std::uint64_t quectel_rover = 1, quectel_base = 2;
 
 inline constexpr std::int64_t quectel_axis_offset_m = 8'000'000, quectel_rests_per_metre = 10'000;
+constexpr double quectel_axis_m(std::uint64_t metres, std::uint64_t rest) {
+    return static_cast<double>(metres) - static_cast<double>(quectel_axis_offset_m) +
+           static_cast<double>(rest) / static_cast<double>(quectel_rests_per_metre);
+}
 
 /// Keys of the settings of their own. Coordinates are whole metres from −8,000,000 on and tenths of millimetres.
 struct QuectelKeys {
@@ -44,12 +48,7 @@ struct QuectelKeys {
     }
 };
 
-/// The list, and the names that it points to.
-struct QuectelSettings {
-    std::vector<std::string> names;
-    std::vector<OwnSetting> list;
-};
-QuectelSettings quectel_settings(const BoardProfile& board);
+OwnSettings quectel_settings(const BoardProfile& board);
 
 /// A sentence of their own, without "$" and checksum; nothing where there is nothing to say.
 std::optional<std::string> quectel_sentence(std::string_view name, const ReportContext& context);

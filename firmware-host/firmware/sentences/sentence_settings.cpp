@@ -60,6 +60,16 @@ std::map<std::uint32_t, std::string> names_of(const BoardProfile& board, std::sp
 
 }  // namespace
 
+std::vector<PortId> uarts_of(const BoardProfile& board) {
+    std::vector<PortId> uarts;
+    std::ranges::copy_if(board.ports, std::back_inserter(uarts), is_uart);
+    return uarts;
+}
+
+bool can_fix_each(const BoardProfile& board, std::uint64_t period_ms) {
+    return static_cast<double>(period_ms) * board.max_rate_hz >= 999.5;
+}
+
 SentenceSettings::SentenceSettings(const BoardProfile& board, const ReceiverOptions& options,
                                    std::span<const OwnSetting> own)
     : LayeredValues(factory_values(board, options, own)),
@@ -118,6 +128,13 @@ ReceiverConfig SentenceSettings::config() const {
         if (is_uart(port))
             config.ports[static_cast<std::size_t>(port)].baud = static_cast<std::uint32_t>(value(baud(port)));
     return config;
+}
+
+void SentenceSettings::keep(std::uint32_t key, std::uint64_t value) {
+    if (stored(ConfigLayer::factory, key) != value)
+        set(in_flash, key, value);
+    else
+        erase(in_flash, key);
 }
 
 std::string SentenceSettings::name_of(std::uint32_t key) const { return names_.at(key); }

@@ -1,6 +1,7 @@
 /// What receivers of sentences can be set to, whoever made them.
 #pragma once
 
+#include <deque>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +19,20 @@ struct OwnSetting {
     std::string_view name;
     std::uint64_t factory = 0;
 };
+/// A list of them that a board makes, and the names that it points to.
+struct OwnSettings {
+    std::deque<std::string> names;
+    std::vector<OwnSetting> list;
+
+    void add(std::uint32_t key, std::string name, std::uint64_t factory) {
+        list.push_back({key, names.emplace_back(std::move(name)), factory});
+    }
+};
+
+/// A board's UARTs in their order, by which commands number them.
+std::vector<PortId> uarts_of(const BoardProfile& board);
+/// Whether the board is fast enough for a fix each so many milliseconds.
+bool can_fix_each(const BoardProfile& board, std::uint64_t period_ms);
 
 /// Settings by our own names, "fix_interval_ms" or "GGA_uart1".
 class SentenceSettings : public LayeredValues {
@@ -37,6 +52,8 @@ public:
 
     /// Whether the board could go on with these systems on: it has them, and one of them gives a position.
     [[nodiscard]] bool can_have(const std::vector<std::pair<Constellation, bool>>& wanted) const;
+    /// The value is in flash from then on; one of the factory needs no flash.
+    void keep(std::uint32_t key, std::uint64_t value);
     /// What the receiver does by them.
     [[nodiscard]] ReceiverConfig config() const;
 
